@@ -9,10 +9,11 @@ fn main() -> Result<(), restitution_core::Error> {
         ..Run::default()
     };
     let records = run.simulate(Resources::default(), &Monitor::default())?;
-    let above = records.restitution.iter().filter(|&&e| e > 1.0).count();
+    let restitution = records.numbers("restitution");
+    let above = restitution.iter().filter(|&&e| e > 1.0).count();
     println!(
         "{above} of {} impacts have a restitution above 1",
-        records.impacts.iter().sum::<i64>()
+        records.numbers("impacts").iter().sum::<f64>()
     );
     Ok(())
 }

@@ -51,7 +51,10 @@ mod simulate;
 pub mod statistics;
 mod threads;
 
-pub use drop::{About, COLLAPSE_RUN, Height, Limits, Orientation, Run, Scales, Spin, StopReason};
+pub use drop::{
+    About, COLLAPSE_RUN, Height, Limits, Orientation, PER_IMPACT, PER_PARTICLE, Run, Scales, Spin,
+    StopReason,
+};
 #[cfg(feature = "one-lane")]
 pub use drop::{
     FlightEnd, FlightStart, NoConvergence, SingleImpact, collide, first_contact, trajectory,
@@ -61,7 +64,7 @@ pub use law::*;
 pub use math::{Quaternion, Symmetric, Vector};
 pub use memory::{collected, copied};
 pub use motion::{Rotation, SpinBounds, State};
-pub use record::{Columns, PER_IMPACT, PER_PARTICLE, Records, Values, Variable, When};
+pub use record::{Columns, Element, Elements, Records, Values, Variable, When};
 pub use shape::*;
 pub use simd::{Level, elementary};
 pub use simulate::simulate_series;

@@ -1,9 +1,8 @@
 //! All particles of a run, on all cores. Particles do not interact, so that the result does not depend on the schedule.
 
 use crate::Error;
-use crate::drop::{BLOCK, JoinedRuns, Plan, Run, Source, bounce_block, even, share};
-use crate::record::Table;
-use crate::record::{Columns, Records};
+use crate::drop::{BLOCK, JoinedRuns, Plan, Run, even, share};
+use crate::record::{Columns, Process, Records, Source, Table};
 use crate::statistics::{
     Bins, By, CountSink, Histogram, HistogramSink, MomentSink, Rows, UNSPOILT,
 };
@@ -47,9 +46,7 @@ impl Run<'_> {
     ) -> Result<Records, Error> {
         let plan = Plan::new(self)?;
         plan.check_part(&part)?;
-        let mut records = recorded(&plan, part.clone(), |_| BLOCK, columns, resources, monitor)?;
-        records.add_release(&plan, part.start)?;
-        Ok(records)
+        recorded(&plan, part, |_| BLOCK, columns, resources, monitor)
     }
 
     /// Simulates every particle and keeps only the statistics of the impacts, in memory that does not grow with the run.
@@ -95,7 +92,7 @@ impl Run<'_> {
         let mut total = Histogram::new(bins, self.origin())?;
         for part in parts {
             let shared = Mutex::new(total);
-            let rows = Self::rows(&plan, part.clone(), bins, resources, monitor, &shared)?;
+            let rows = counted(&plan, part.clone(), bins, resources, monitor, &shared)?;
             total = shared.into_inner().expect(UNSPOILT);
             report(&rows)?;
             total.rows.merge(&rows);
@@ -105,67 +102,69 @@ impl Run<'_> {
         }
         Ok(total)
     }
+}
 
-    /// Counts the impacts of a part in the grids of a histogram, and returns what else is summed of them.
-    fn rows(
-        plan: &Plan<'_>,
-        part: Range<usize>,
-        bins: &Bins,
-        resources: Resources,
-        monitor: &Monitor,
-        shared: &Mutex<Histogram>,
-    ) -> Result<Rows, Error> {
-        let even = bins.are_even();
-        let found = match &bins.fraction {
-            Some(fractions) if even => Self::each(plan, part, resources, monitor, || {
-                MomentSink::<true>::new(bins, fractions, plan, shared)
-            }),
-            Some(fractions) => Self::each(plan, part, resources, monitor, || {
-                MomentSink::<false>::new(bins, fractions, plan, shared)
-            }),
-            None if even => Self::each(plan, part, resources, monitor, || {
-                CountSink::<true>::new(bins, plan, shared)
-            }),
-            None => Self::each(plan, part, resources, monitor, || {
-                CountSink::<false>::new(bins, plan, shared)
-            }),
-        };
-        let mut sum = Rows::new(bins, plan.run.origin())?;
-        for rows in found? {
-            sum.merge(&rows?);
+/// Counts the events of some rows in the grids of a histogram, and returns what else is summed of them.
+fn counted<S: Source>(
+    source: &S,
+    part: Range<usize>,
+    bins: &Bins,
+    resources: Resources,
+    monitor: &Monitor,
+    shared: &Mutex<Histogram>,
+) -> Result<Rows, Error> {
+    let even = bins.are_even();
+    let units = S::Of::units(source.plan());
+    let reasons = S::Of::REASONS.len();
+    let found = match &bins.fraction {
+        Some(fractions) if even => each(source, part, resources, monitor, || {
+            MomentSink::<true>::new(bins, fractions, units, reasons, shared)
+        }),
+        Some(fractions) => each(source, part, resources, monitor, || {
+            MomentSink::<false>::new(bins, fractions, units, reasons, shared)
+        }),
+        None if even => each(source, part, resources, monitor, || {
+            CountSink::<true>::new(bins, units, reasons, shared)
+        }),
+        None => each(source, part, resources, monitor, || {
+            CountSink::<false>::new(bins, units, reasons, shared)
+        }),
+    };
+    let mut sum = Rows::new(bins, units.1, reasons)?;
+    for rows in found? {
+        sum.merge(&rows?);
+    }
+    Ok(sum)
+}
+
+/// The sums of every thread. They do not depend on which thread takes which block, because integer sums do not depend on the
+/// order.
+fn each<S: Source, T: HistogramSink<S::Of>>(
+    source: &S,
+    part: Range<usize>,
+    resources: Resources,
+    monitor: &Monitor,
+    counter: impl Fn() -> Result<T, Error> + Sync,
+) -> Result<Vec<Result<Rows, Error>>, Error> {
+    let next = AtomicUsize::new(part.start);
+    resources.each_thread(part.len().div_ceil(BLOCK), |threads| {
+        let mut counter = counter()?;
+        while !monitor.is_cancelled() {
+            let next = next.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |first| {
+                let left = part.end - first;
+                (left > 0).then(|| first + share(left, threads))
+            });
+            let Ok(first) = next else { break };
+            let rows = first..first + share(part.end - first, threads);
+            S::Of::simulate(source, rows, resources.level, monitor, &mut counter)?;
         }
-        Ok(sum)
-    }
-
-    /// The sums of every thread. They do not depend on which thread takes which block, because integer sums do not depend on the
-    /// order.
-    fn each<T: HistogramSink>(
-        plan: &Plan<'_>,
-        part: Range<usize>,
-        resources: Resources,
-        monitor: &Monitor,
-        counter: impl Fn() -> Result<T, Error> + Sync,
-    ) -> Result<Vec<Result<Rows, Error>>, Error> {
-        let next = AtomicUsize::new(part.start);
-        resources.each_thread(part.len().div_ceil(BLOCK), |threads| {
-            let mut counter = counter()?;
-            while !monitor.is_cancelled() {
-                let next = next.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |first| {
-                    let left = part.end - first;
-                    (left > 0).then(|| first + share(left, threads))
-                });
-                let Ok(first) = next else { break };
-                let particles = first..first + share(part.end - first, threads);
-                bounce_block(plan, particles, resources.level, monitor, &mut counter)?;
-            }
-            Ok(counter.finish())
-        })
-    }
+        Ok(counter.finish())
+    })
 }
 
 /// Simulates parts of several runs, which may differ in seed, number of particles and release alone, as one: particles from all of them
-/// are in the lanes at the same time. Records the variables in `columns` of every impact, part after part, without heights, azimuths and
-/// spins at release. The impacts have the same bits as in [`Run::simulate`].
+/// are in the lanes at the same time. Records the variables in `columns` of every impact, part after part, and of the
+/// release those that vary in the first run. The impacts have the same bits as in [`Run::simulate`].
 ///
 /// # Errors
 /// As [`Run::simulate`], and [`Error::Parameter`] for runs that differ in more.
@@ -182,22 +181,22 @@ pub fn simulate_series(
 }
 
 /// The impacts of a range of particles, which threads take in blocks of as many as `block` says for their number.
-fn recorded(
-    source: &impl Source,
+fn recorded<S: Source>(
+    source: &S,
     part: Range<usize>,
     block: impl Fn(usize) -> usize + Sync,
     columns: &Columns,
     resources: Resources,
     monitor: &Monitor,
 ) -> Result<Records, Error> {
-    let impacts = source.plan().run.impacts;
+    let impacts = S::Of::most(source.plan());
     Error::unless(
         part.len().checked_mul(impacts).is_some(),
         "particles",
         part.len(),
         "such that particles × impacts can be counted",
     )?;
-    let mut records = Records::new(part.len(), impacts, columns)?;
+    let mut records = Records::new::<S::Of>(source.plan(), part.len(), columns)?;
     let started = AtomicUsize::new(part.start);
     let rows = Mutex::new(records.block());
     // Free threads take blocks in order, so that the particles begun before a cancellation are contiguous.
@@ -206,7 +205,7 @@ fn recorded(
         while !monitor.is_cancelled() {
             let mut rows = rows.lock().expect("no thread panics while it takes rows");
             let block = rows.split(size);
-            let count = block.impacts.len();
+            let count = block.len();
             let first = started.fetch_add(count, Ordering::Relaxed);
             drop(rows);
             if count == 0 {
@@ -214,7 +213,7 @@ fn recorded(
             }
             let particles = first..first + count;
             let mut table = Table::new(block, source, first);
-            bounce_block(source, particles, resources.level, monitor, &mut table)?;
+            S::Of::simulate(source, particles, resources.level, monitor, &mut table)?;
             table.finish(monitor);
         }
         Ok(())

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use restitution_core::statistics::{
     Axis, Bins, By, CREATES_ENERGY, Gains, Grid, Histogram, Moments, Sums,
 };
-use restitution_core::{Level, Monitor, Records, Resources, Run, StopReason};
+use restitution_core::{Level, Monitor, Resources, Run, StopReason};
 
 /// What a histogram should say, worked out from the table of impacts, one at a time.
 struct Expected {
@@ -96,7 +96,7 @@ impl Expected {
         prop_assert_eq!(histogram.restitution.counts(), &self.restitution[..]);
         prop_assert_eq!(histogram.fraction.counts(), &self.fraction[..]);
         prop_assert_eq!(&histogram.rows.gains, &self.gains);
-        prop_assert_eq!(histogram.rows.stops, self.stops);
+        prop_assert_eq!(&histogram.rows.stops, &self.stops);
         for (row, values) in self.values.iter().enumerate() {
             let number = values.len();
             prop_assert_eq!(histogram.rows.number(row), number as u64);
@@ -215,7 +215,7 @@ proptest! {
         jitter in prop::collection::vec(-3e-8..3e-8_f64, 21), level in level(),
     ) {
         let run = Run { particles: 40, impacts: 30, ..paper(elongation, law(0.9, 0.5)) };
-        let records = run.simulate(Resources { threads: 1, level }, &Monitor::default()).unwrap();
+        let records = Records::from(run.simulate(Resources { threads: 1, level }, &Monitor::default()).unwrap());
         let i = pick.index(run.particles) * run.impacts;
         let i = i + pick.index(records.impacts[i / run.impacts] as usize);
         let around = |axis: usize, value: f64| -> Vec<f64> {
@@ -239,9 +239,10 @@ proptest! {
 }
 
 fn counts_and_sums_what_simulate_records(run: &Run<'_>, level: Level) -> Result<(), TestCaseError> {
-    let records = run
-        .simulate(Resources { threads: 1, level }, &Monitor::default())
-        .unwrap();
+    let records = Records::from(
+        run.simulate(Resources { threads: 1, level }, &Monitor::default())
+            .unwrap(),
+    );
     let edges = Edges::coarse();
     let origin = run.origin();
     let by_velocity = statistics(run, &edges.by_velocity(), level, 2);

@@ -8,7 +8,7 @@
 use crate::common::*;
 use crate::digested::{angles, jobs, kinds};
 use restitution_core::statistics::{Axis, Bins, By, Grid, Histogram};
-use restitution_core::{Level, Monitor, Orientation, Records, Resources, Run};
+use restitution_core::{Level, Monitor, Orientation, Resources, Run};
 use std::collections::BTreeMap;
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/digests.txt");
@@ -56,7 +56,7 @@ impl Digest {
     fn histogram(&mut self, histogram: &Histogram, rows: usize) {
         let grids: [&Grid; 2] = [&histogram.restitution, &histogram.fraction];
         // Bodies of revolution do not settle: the last reason counts nobody.
-        let [stops @ .., settled] = &histogram.rows.stops;
+        let (settled, stops) = histogram.rows.stops.split_last().unwrap();
         assert_eq!(*settled, 0);
         for count in grids.into_iter().flat_map(Grid::counts).chain(stops) {
             self.word(*count);
@@ -94,7 +94,7 @@ fn bins(by: By) -> Bins {
 /// Digest of the table, and its number of impacts.
 fn simulate(run: &Run<'_>, resources: Resources) -> (u64, i64) {
     let mut digest = Digest::new();
-    let records = run.simulate(resources, &Monitor::default()).unwrap();
+    let records = Records::from(run.simulate(resources, &Monitor::default()).unwrap());
     digest.records(&records, run.impacts);
     (digest.0, records.impacts.iter().sum())
 }
@@ -213,7 +213,8 @@ fn portions_have_the_digests_of_the_whole() {
                 ..*whole
             };
             let monitor = Monitor::default();
-            table.records(&run.simulate(resources, &monitor).unwrap(), run.impacts);
+            let records = run.simulate(resources, &monitor).unwrap().into();
+            table.records(&records, run.impacts);
             total.merge(&run.statistics(&bins, resources, &monitor).unwrap());
         }
         statistics.histogram(&total, bins.rows());

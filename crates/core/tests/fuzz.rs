@@ -137,7 +137,9 @@ fn compare(case: &Case) -> Result<u64, TestCaseError> {
     let run = case.run();
     let table = |level: Level, threads: usize| {
         let records = run.simulate(Resources { threads, level }, &Monitor::default());
-        records.map_err(|error| TestCaseError::fail(format!("{}: {error}", level.name())))
+        records
+            .map(Records::from)
+            .map_err(|error| TestCaseError::fail(format!("{}: {error}", level.name())))
     };
     let records = table(Level::Scalar, 1)?;
     let all = all_bits(&records);

@@ -123,7 +123,7 @@ fn every_level_and_thread_count_gives_the_same_bits() {
     };
     let at = |level: Level, threads: usize| {
         let resources = Resources { threads, level };
-        run.simulate(resources, &Monitor::default()).unwrap()
+        Records::from(run.simulate(resources, &Monitor::default()).unwrap())
     };
     let reference = at(Level::Scalar, 1);
     let slow = StopReason::SpeedBelowThreshold as i8;
@@ -151,7 +151,8 @@ fn turning_contacts_have_the_same_bits_in_every_lane() {
             };
             let at = |level: Level| {
                 let resources = Resources { threads: 1, level };
-                all_bits(&run.simulate(resources, &Monitor::default()).unwrap())
+                let records = run.simulate(resources, &Monitor::default()).unwrap();
+                all_bits(&records.into())
             };
             let alone = at(Level::Scalar);
             for level in Level::available() {

@@ -4,8 +4,7 @@ use crate::common::*;
 use crate::scalar::Observed;
 use restitution_core::{
     About, AnyBody, Frictionless, Law, Level, Limits, LoadedSphere, Monitor, Orientation, Plastic,
-    Records, Resources, Run, Scales, SingleImpact, Spheroid, Spin, State, StopReason, Vector,
-    trajectory,
+    Resources, Run, Scales, SingleImpact, Spheroid, Spin, State, StopReason, Vector, trajectory,
 };
 
 const TUMBLING: Spin<'_> = Spin::Random {
@@ -170,7 +169,7 @@ fn the_same_bits_on_any_number_of_threads() {
         let one = simulate_on(&run, 1, &Monitor::default());
         for (threads, level) in [(2, Level::best()), (3, Level::Scalar)] {
             let resources = Resources { threads, level };
-            let other = run.simulate(resources, &Monitor::default()).unwrap();
+            let other = Records::from(run.simulate(resources, &Monitor::default()).unwrap());
             assert!(same(&one, &other));
         }
     }

@@ -39,7 +39,8 @@ fn runs(material: &Material) -> Vec<Run<'_>> {
 
 fn on(run: &Run<'_>, threads: usize, level: Level) -> impl PartialEq + use<> {
     let resources = Resources { threads, level };
-    all_bits(&run.simulate(resources, &Monitor::default()).unwrap())
+    let records = run.simulate(resources, &Monitor::default()).unwrap();
+    all_bits(&records.into())
 }
 
 #[test]
@@ -69,19 +70,22 @@ fn a_particle_is_the_same_by_itself() {
             level: Level::best(),
         };
         let series = [(run, 30..40), (other, 0..20)];
-        let found = simulate_series(
-            &series,
-            &Columns::usual(run.body, &run.law, false),
-            resources,
-            &Monitor::default(),
-        )
-        .unwrap();
+        let found = Records::from(
+            simulate_series(
+                &series,
+                &Columns::usual(run.body, &run.law, false),
+                resources,
+                &Monitor::default(),
+            )
+            .unwrap(),
+        );
         let expected = [&all[0].time[30 * 40..40 * 40], &all[1].time[..20 * 40]].concat();
         let bits = |times: &[f64]| times.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&found.time), bits(&expected));
-        let alone = run
-            .simulate_part(33..34, resources, &Monitor::default())
-            .unwrap();
+        let alone = Records::from(
+            run.simulate_part(33..34, resources, &Monitor::default())
+                .unwrap(),
+        );
         assert_eq!(bits(&alone.time), bits(&all[0].time[33 * 40..34 * 40]));
     }
 }

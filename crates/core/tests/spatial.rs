@@ -101,7 +101,7 @@ fn the_table_holds_what_the_oracle_says() {
 fn every_impact_is_counted() {
     for body in bodies() {
         let run = run(body);
-        let records = run.simulate(MEANS, &Monitor::default()).unwrap();
+        let records = Records::from(run.simulate(MEANS, &Monitor::default()).unwrap());
         let axis = |edges: &[f64]| Axis::new("edges", edges).unwrap();
         let bins = Bins {
             by: By::Number(run.impacts),

@@ -4,7 +4,7 @@ use crate::common::*;
 use crate::scalar::*;
 use restitution_core::{
     About, COLLAPSE_RUN, ChatterjeeRuina, Coulomb, Hypothesis, Law, Limits, Monitor, Orientation,
-    Records, Run, SingleImpact as Impact, Spin, State, StopReason, Vector,
+    Run, SingleImpact as Impact, Spin, State, StopReason, Vector,
 };
 
 /// What happened is finite, what did not is NaN or 0, and each particle's count tells where one ends and the other begins.

@@ -176,7 +176,7 @@ fn only_ratios_matter() {
         (2.0_f64.powi(-20), 2500.0, 1.62),
     ] {
         let scaled = simulate(&ensemble(radius, density, gravity, &angles));
-        let numbers = |r: &restitution_core::Records| {
+        let numbers = |r: &Records| {
             [
                 &r.restitution,
                 &r.rotational_fraction,

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use restitution_core::{
-    Columns, Error, Level, Monitor, Orientation, Records, Resources, Run, Spin, Vector,
+    Columns, Error, Level, Monitor, Orientation, PER_IMPACT, Resources, Run, Spin, Vector,
     default_threads, simulate_series,
 };
 use std::collections::HashSet;
@@ -95,7 +95,7 @@ fn series(
 ) -> Result<Records, Error> {
     let level = Level::best();
     let columns = Columns::usual(runs[0].0.body, &runs[0].0.law, false);
-    simulate_series(runs, &columns, Resources { threads, level }, monitor)
+    simulate_series(runs, &columns, Resources { threads, level }, monitor).map(Records::from)
 }
 
 /// Parts of several runs simulated as one have the bits of each run by itself, one after the other.
@@ -188,7 +188,7 @@ fn runs_that_differ_are_no_series() {
         },
     ];
     let refused = |runs: &[(Run<'_>, std::ops::Range<usize>)]| {
-        let columns = Columns::NONE;
+        let columns = Columns::named(PER_IMPACT, []).unwrap();
         let resources = Resources {
             threads: 1,
             level: Level::Scalar,

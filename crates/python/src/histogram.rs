@@ -116,7 +116,11 @@ fn table(py: Python<'_>, counts: core::Histogram) -> PyResult<Bound<'_, PyDict>>
     table.set_item("energy_created", column(py, created)?)?;
     let largest = rows.gains.iter().map(|row| row.largest);
     table.set_item("largest_energy_ratio", column(py, largest)?)?;
-    let stops = rows.stops.map(|count| count as i64).to_vec();
+    let stops = rows
+        .stops
+        .iter()
+        .map(|&count| count as i64)
+        .collect::<Vec<_>>();
     table.set_item("stops", stops.into_pyarray(py))?;
     Ok(table)
 }

@@ -7,7 +7,7 @@ use crate::{Parameters, range, resources, watch};
 use numpy::{Element, IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PySlice, PyTuple};
-use restitution_core::{Columns, Records, Values, Variable};
+use restitution_core::{Columns, PER_IMPACT, Records, Values, Variable};
 
 /// The numbers of the recorded particles, for runs in which some had to be left out.
 const NUMBER: Variable = Variable {
@@ -17,14 +17,15 @@ const NUMBER: Variable = Variable {
 };
 
 fn named(columns: &[String]) -> PyResult<Columns> {
-    Columns::named(columns.iter().map(String::as_str)).map_err(python_error)
+    Columns::named(PER_IMPACT, columns.iter().map(String::as_str)).map_err(python_error)
 }
 
 /// The names of the variables of an impact that are recorded of a body under a law, with the full state if `state`.
 #[pyfunction]
 #[pyo3(signature = (body, law, state=false))]
 fn columns(body: Dropped<'_>, law: &Law, state: bool) -> Vec<&'static str> {
-    Columns::usual(body.body(), &law.law(), state).names()
+    let chosen = Columns::usual(body.body(), &law.law(), state);
+    chosen.of(PER_IMPACT).map(|about| about.key).collect()
 }
 
 /// Simulates the particles from `part[0]` up to, not including, `part[1]`, or all, and records the variables in `columns`, or those
@@ -97,7 +98,8 @@ fn table(py: Python<'_>, mut records: Records, impacts: usize) -> PyResult<Bound
 /// Memory for one impact with these variables, in bytes.
 #[pyfunction]
 fn bytes_per_impact(columns: Vec<String>) -> PyResult<usize> {
-    Ok(named(&columns)?.bytes())
+    let chosen = named(&columns)?;
+    Ok(chosen.of(PER_IMPACT).map(Variable::bytes).sum())
 }
 
 /// Dimensions, values and attributes, named according to the CF conventions.

@@ -16,7 +16,7 @@ struct Start {
     /// The angular velocity before the impact.
     before: Vector,
     /// The part that touched, from 1; 0 at release.
-    part: i32,
+    part: f64,
 }
 
 /// The flights, row by row; the first starts at the release. SI units. Of a body of revolution in 14 columns: start time; height of the
@@ -29,56 +29,79 @@ pub fn follow(run: &Run<'_>, particle: usize) -> Result<Vec<f64>, Error> {
     let starts = starts(run, &records);
     Ok(match run.body {
         AnyBody::Revolution(solid) => {
-            let (sine, cosine) = elementary::sincos(records.release_angle[0]);
-            let azimuth = records.release_azimuth.first().copied().unwrap_or(0.0);
+            let (sine, cosine) = elementary::sincos(records.numbers("release_angle")[0]);
+            let azimuth = records
+                .numbers("release_azimuth")
+                .first()
+                .copied()
+                .unwrap_or(0.0);
             let (y, x) = elementary::sincos(azimuth);
             let axes = [[sine * x, sine * y, cosine]];
-            let axes = axes.iter().chain(&records.axis).map(vector);
+            let axes = axes
+                .into_iter()
+                .chain(vectors(&records, "axis"))
+                .map(|axis| vector(&axis));
             let rows = starts.iter().zip(axes);
             rows.flat_map(|(start, axis)| revolving(&solid, start, axis))
                 .collect()
         }
         AnyBody::Rigid(body) => {
-            let attitudes = records.release_attitude.iter().chain(&records.attitude);
+            let attitudes = [
+                vectors(&records, "release_attitude"),
+                vectors(&records, "attitude"),
+            ]
+            .concat();
             let rows = starts.iter().zip(attitudes);
-            rows.flat_map(|(start, &[w, x, y, z])| rigid(body, start, Quaternion::new(w, x, y, z)))
+            rows.flat_map(|(start, [w, x, y, z])| rigid(body, start, Quaternion::new(w, x, y, z)))
                 .collect()
         }
     })
 }
 
+/// The recorded values of a vector.
+fn vectors<const N: usize>(records: &Records, name: &str) -> Vec<[f64; N]> {
+    records.numbers(name).as_chunks().0.to_vec()
+}
+
 fn starts(run: &Run<'_>, records: &Records) -> Vec<Start> {
     let height = match run.release_height {
         Height::Fixed(height) => height,
-        Height::Random { .. } => records.release_height[0],
+        Height::Random { .. } => records.numbers("release_height")[0],
     };
     let (sine, cosine) = elementary::sincos(run.incline);
     let gravity = Vector::new(run.gravity * sine, 0.0, -run.gravity * cosine);
-    let spin = records.release_spin.first().map(vector).unwrap_or_default();
+    let spin = vectors(records, "release_spin")
+        .first()
+        .map(vector)
+        .unwrap_or_default();
     let mut starts = vec![Start {
         time: 0.0,
         place: Vector::new(0.0, 0.0, height),
         velocity: run.release_velocity,
         spin,
         before: spin,
-        part: 0,
+        part: 0.0,
     }];
-    for i in 0..records.impacts[0] as usize {
+    let [time, height, part] = ["time", "height", "contact"].map(|name| records.numbers(name));
+    let [velocity, after, before] = [
+        "velocity_after",
+        "angular_velocity_after",
+        "angular_velocity_before",
+    ]
+    .map(|name| vectors(records, name));
+    for i in 0..records.numbers("impacts")[0] as usize {
         let last = &starts[i];
-        let lasted = records.time[i] - last.time;
+        let lasted = time[i] - last.time;
         // In flight gravity alone acts (5); the height is that of the contact.
         let mut place = last.place + last.velocity * lasted + gravity * (0.5 * lasted * lasted);
-        place.z = records.height[i];
+        place.z = height[i];
         starts.push(Start {
-            time: records.time[i],
+            time: time[i],
             place,
-            velocity: vector(&records.velocity_after[i]),
-            spin: vector(&records.angular_velocity_after[i]),
-            before: vector(&records.angular_velocity_before[i]),
-            part: match run.body {
-                AnyBody::Revolution(_) => i32::from(records.contact[i]),
-                AnyBody::Rigid(_) => records.part[i],
-            },
+            velocity: vector(&velocity[i]),
+            spin: vector(&after[i]),
+            before: vector(&before[i]),
+            part: part[i],
         });
     }
     starts
@@ -95,7 +118,7 @@ fn revolving(solid: &Solid, start: &Start, axis: Vector) -> Vec<f64> {
             .map(components)
             .as_flattened(),
     );
-    row.extend([(spin - turning).dot(axis), rotation, f64::from(start.part)]);
+    row.extend([(spin - turning).dot(axis), rotation, start.part]);
     row
 }
 
@@ -104,15 +127,15 @@ fn rigid(body: &Rigid, start: &Start, attitude: Quaternion) -> Vec<f64> {
     let rotation = 0.5 * body.unit * body.unit * body.top.twice_energy(within);
     let normal = Vector::new(0.0, 0.0, 1.0);
     let [up, turning] = [normal, normal.cross(start.before)].map(|v| attitude.inverse().rotate(v));
-    let arm = match start.part {
+    let arm = match start.part as usize {
         0 => Vector::default(),
-        part => attitude.rotate(body.nearest(part as usize - 1, up, turning)),
+        part => attitude.rotate(body.nearest(part - 1, up, turning)),
     };
     let mut row = vec![start.time];
     row.extend([start.place, start.velocity].map(components).as_flattened());
     row.extend(quaternion(attitude));
     row.extend(components(start.spin));
-    row.extend([rotation, f64::from(start.part)]);
+    row.extend([rotation, start.part]);
     row.extend(components(arm));
     row
 }

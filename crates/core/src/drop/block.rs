@@ -1,12 +1,14 @@
 //! A block of particles, and the choice of the bounce loop for their motion, hull and law.
 
 use super::lanes::{
-    Advance, Dimension, GROUPS, General, Inlined, Lost, Planar, Release, Sink, Spatial, bounce,
+    Advance, Dimension, GROUPS, General, ImpactSink, Inlined, Lost, Planar, Release, Spatial,
+    bounce,
 };
-use super::{Source, rigid};
+use super::{Bounces, rigid};
 use crate::Error;
 use crate::motion::State;
 use crate::random::of_impact;
+use crate::record::Source;
 use crate::shape::{AnyBody, Body, Rigid, Surface};
 use crate::simd::Level;
 use crate::threads::Monitor;
@@ -38,11 +40,11 @@ pub(crate) fn even(particles: usize, threads: usize) -> usize {
 
 /// Simulates a range of particles and hands their impacts to `sink`.
 pub(crate) fn bounce_block(
-    source: &impl Source,
+    source: &impl Source<Of = Bounces>,
     particles: Range<usize>,
     level: Level,
     monitor: &Monitor,
-    sink: &mut impl Sink,
+    sink: &mut impl ImpactSink,
 ) -> Result<(), Error> {
     let count = particles.len() as u64;
     // A law of one's own may take long: the fewer contacts it is asked about at a time, the sooner a run that is cancelled ends.
@@ -70,7 +72,7 @@ struct Block<'a, R, T> {
     sink: &'a mut T,
 }
 
-impl<R: Source, T: Sink> WithSimd for Block<'_, R, T> {
+impl<R: Source<Of = Bounces>, T: ImpactSink> WithSimd for Block<'_, R, T> {
     type Output = Result<(), Error>;
 
     #[inline(always)]
@@ -92,7 +94,7 @@ impl<R: Source, T: Sink> WithSimd for Block<'_, R, T> {
     }
 }
 
-impl<R: Source, T: Sink> Block<'_, R, T> {
+impl<R: Source<Of = Bounces>, T: ImpactSink> Block<'_, R, T> {
     #[inline(always)]
     fn run<S: Simd, K: Dimension>(
         self,
@@ -157,7 +159,7 @@ struct Released<'a, R> {
     body: &'a Body,
 }
 
-impl<R: Source> Release for Released<'_, R> {
+impl<R: Source<Of = Bounces>> Release for Released<'_, R> {
     #[inline(always)]
     fn start(&self, particle: usize) -> State {
         let (plan, number) = self.source.origin(particle);
@@ -171,7 +173,7 @@ impl<R: Source> Release for Released<'_, R> {
 }
 
 /// The error that names the particle, its seed and the flight or the impact in question.
-fn error(source: &impl Source, lost: Lost) -> Error {
+fn error(source: &impl Source<Of = Bounces>, lost: Lost) -> Error {
     let Lost {
         particle,
         impacts,

@@ -3,6 +3,7 @@
 mod block;
 mod lanes;
 mod plan;
+mod recorded;
 mod release;
 mod rigid;
 mod scales;
@@ -14,11 +15,13 @@ pub(crate) use block::{BLOCK, bounce_block, even, share};
 pub use lanes::one_lane::{
     FlightEnd, FlightStart, NoConvergence, SingleImpact, collide, first_contact, trajectory,
 };
-pub(crate) use lanes::{Impact, Meanwhile, PLACES, Pose, Sink, of_group};
+pub(crate) use lanes::{Impact, PLACES, Pose, of_group};
 pub(crate) use plan::Plan;
+pub(crate) use recorded::Bounces;
+pub use recorded::{PER_IMPACT, PER_PARTICLE};
 pub use release::{About, Height, Orientation, Spin};
 pub use scales::Scales;
-pub(crate) use series::{JoinedRuns, Source};
+pub(crate) use series::JoinedRuns;
 pub use stop::{COLLAPSE_RUN, Limits, StopReason};
 
 use crate::law::{Law, TangentialRestitution};

@@ -1,6 +1,6 @@
 //! The bounce loop for bodies of any shape, one particle at a time.
 
-use super::lanes::{Impact, Lost, Pose, Sink};
+use super::lanes::{Impact, ImpactSink, Lost, Pose};
 use super::stop::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use crate::Fault;
 use crate::contact::{Departure, Gap, INVISIBLE, LAST, MOST_STEPS};
@@ -97,7 +97,7 @@ impl Bouncing<'_> {
         simd: S,
         (particle, start): (usize, RigidState),
         chance: impl Fn(u64) -> f64,
-        sink: &mut impl Sink,
+        sink: &mut impl ImpactSink,
         go_on: impl Fn() -> bool,
     ) -> Result<(), Lost> {
         let lost = |impacts, fault| Lost {
@@ -394,7 +394,7 @@ impl Bouncing<'_> {
         (particle, number, clock): (usize, usize, f64),
         contact: &Contact,
         bounce: &Bounce,
-        sink: &mut impl Sink,
+        sink: &mut impl ImpactSink,
     ) {
         let (before, after) = (&contact.state, &bounce.after);
         let (rotation, energy_before) = self.energies(before);
@@ -416,7 +416,7 @@ impl Bouncing<'_> {
             },
             active: Mask::splat(Scalar::new(), true),
         };
-        sink.impact(0, &impact);
+        sink.event(0, &impact);
         sink.settle(0..1);
     }
 }
@@ -649,8 +649,8 @@ mod tests {
                 level: Level::best(),
             };
             evaluations::taken();
-            let records = run.simulate(resources, &Monitor::default()).unwrap();
-            let impacts = records.time.len() as f64;
+            run.simulate(resources, &Monitor::default()).unwrap();
+            let impacts = (run.particles * run.impacts) as f64;
             let [attitudes, gaps, quarters, supports] =
                 evaluations::taken().map(|count| count as f64 / impacts);
             let row = format!(

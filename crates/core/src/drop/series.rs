@@ -1,19 +1,13 @@
 //! Several runs side by side: particles that differ only in how they are released.
 
-use super::{Plan, Run};
+use super::{Bounces, Plan, Run};
 use crate::Error;
+use crate::record::Source;
 use std::ops::Range;
 
-/// The origin of particles: one run, or several.
-pub(crate) trait Source: Sync {
-    /// Body, law, units and limits, which are those of all particles.
-    fn plan(&self) -> &Plan<'_>;
-
-    /// The run of a particle, and its number there.
-    fn origin(&self, particle: usize) -> (&Plan<'_>, usize);
-}
-
 impl Source for Plan<'_> {
+    type Of = Bounces;
+
     #[inline(always)]
     fn plan(&self) -> &Plan<'_> {
         self
@@ -66,6 +60,8 @@ impl<'a> JoinedRuns<'a> {
 }
 
 impl Source for JoinedRuns<'_> {
+    type Of = Bounces;
+
     #[inline(always)]
     fn plan(&self) -> &Plan<'_> {
         &self.plans[0]

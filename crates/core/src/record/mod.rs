@@ -1,11 +1,13 @@
-//! The records of a run: the variables of an impact and of a particle, a row each, and the table of all impacts.
+//! The records of a run: the variables of its events and rows, a line each, the table of all events, and the trait of what receives them.
 
-mod columns;
-mod particles;
+mod column;
+mod event;
 mod table;
 mod variable;
 
-pub use columns::{Columns, PER_IMPACT, Records};
-pub use particles::PER_PARTICLE;
+pub use column::{Columns, Element, Elements, Values};
+pub(crate) use column::{InLanes, Slices, Stored};
+pub(crate) use event::{Described, Event, Meanwhile, Process, Sink, Source, variables};
+pub use table::Records;
 pub(crate) use table::Table;
-pub use variable::{Values, Variable, When};
+pub use variable::{Variable, When};

@@ -8,10 +8,9 @@ use super::narrow::Recently;
 use super::places::{all_sites, last, sites, whole};
 use super::rows::{CREATES_ENERGY, Rows};
 use crate::Error;
-use crate::drop::Plan;
-use crate::drop::StopReason;
-use crate::drop::{Impact, Meanwhile, PLACES, Pose, Sink, of_group};
+use crate::drop::{PLACES, of_group};
 use crate::memory::zeros;
+use crate::record::{Event, Meanwhile, Process, Sink};
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
 use std::sync::Mutex;
@@ -23,7 +22,8 @@ pub(crate) struct CountSink<'a, const EVEN: bool> {
     /// The other sums.
     own: Rows,
     bins: &'a Bins,
-    plan: &'a Plan<'a>,
+    /// The unit of velocities, in m/s.
+    speed: f64,
     restitution: Vec<u32>,
     recently: Recently,
     /// The sites at which impacts are to be counted, with [`ROUND`] added.
@@ -33,15 +33,16 @@ pub(crate) struct CountSink<'a, const EVEN: bool> {
 impl<'a, const EVEN: bool> CountSink<'a, EVEN> {
     pub fn new(
         bins: &'a Bins,
-        plan: &'a Plan<'a>,
+        (speed, origin): (f64, f64),
+        reasons: usize,
         shared: &'a Mutex<Histogram>,
     ) -> Result<Self, Error> {
         let sites = bins.rows() * (bins.restitution.bins() + 1);
         Ok(Self {
             shared,
-            own: Rows::new(bins, plan.run.origin())?,
+            own: Rows::new(bins, origin, reasons)?,
             bins,
-            plan,
+            speed,
             restitution: zeros(WHAT, sites + LANES)?,
             recently: Recently::default(),
             queue: [0.0; PLACES],
@@ -71,49 +72,46 @@ impl<const EVEN: bool> Meanwhile for CountSink<'_, EVEN> {
     }
 }
 
-impl<const EVEN: bool> Sink for CountSink<'_, EVEN> {
+impl<P: Process, const EVEN: bool> Sink<P> for CountSink<'_, EVEN> {
     fn begin(&mut self) {
         self.queue.fill(last(&self.restitution));
     }
 
     #[inline(always)]
-    fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
-        &mut self,
-        group: usize,
-        impact: &Impact<S, P, K>,
-    ) {
+    fn event<S: Simd, E: Event<S, K, Of = P>, const K: usize>(&mut self, group: usize, event: &E) {
         let width = Pack::<S, K>::WIDTH;
         if self.recently.add(width) {
             self.empty();
         }
         let lanes = of_group::<S, K>(group);
-        let restitution = impact.restitution();
+        let ((_, number), active) = (event.place(), event.active());
+        let restitution = event.restitution();
         let columns = &self.bins.restitution;
         let (row, column) = match &self.bins.by {
             By::Velocity(axis) => {
-                let velocity = impact.fall * self.plan.scales.speed;
+                let velocity = event.velocity() * self.speed;
                 let [row, column] =
                     Axis::locate::<S, K, _, EVEN>([axis, columns], [velocity, restitution]);
                 (row, column)
             }
             By::Number(_) => {
                 let [column] = Axis::locate::<S, K, _, EVEN>([columns], [restitution]);
-                (impact.number + ROUND, column)
+                (number + ROUND, column)
             }
         };
         let start = row - ROUND;
         let defined = restitution.abs().lt(Sums::LARGEST);
-        let site = if (impact.active & defined).all() {
+        let site = if (active & defined).all() {
             sites(columns, start, column)
         } else {
             let grid = (columns, &self.restitution[..]);
-            all_sites(grid, start, column, defined, impact.active)
+            all_sites(grid, start, column, defined, active)
         };
         self.queue[lanes].copy_from_slice(site.as_slice());
-        let (before, after) = (impact.energy_before, impact.energy_after);
-        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
+        let [before, after] = event.energies();
+        let gaining = active & (before * CREATES_ENERGY).lt(after);
         if gaining.any() {
-            let ratio = impact.energy_ratio();
+            let ratio = event.energy_ratio();
             gaining.each(|lane| {
                 let row = whole(row.as_slice()[lane]);
                 self.own.gains[row].add(ratio.as_slice()[lane]);
@@ -121,12 +119,12 @@ impl<const EVEN: bool> Sink for CountSink<'_, EVEN> {
         }
     }
 
-    fn end(&mut self, _: usize, _: usize, reason: StopReason) {
-        self.own.stops[reason as usize] += 1;
+    fn end(&mut self, _: usize, _: usize, reason: P::Reason) {
+        self.own.stops[P::number(reason)] += 1;
     }
 }
 
-impl<const EVEN: bool> HistogramSink for CountSink<'_, EVEN> {
+impl<P: Process, const EVEN: bool> HistogramSink<P> for CountSink<'_, EVEN> {
     fn finish(mut self) -> Rows {
         self.empty();
         self.own

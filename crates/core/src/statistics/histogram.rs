@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::rows::Rows;
 use crate::Error;
+use crate::StopReason;
 use crate::memory::zeros;
 use bytemuck_alloc::allocation::cast_vec;
 
@@ -165,7 +166,7 @@ impl Histogram {
         Ok(Self {
             restitution: Grid::new(rows, bins.restitution.bins() + 1)?,
             fraction: Grid::new(rows, columns)?,
-            rows: Rows::new(bins, origin)?,
+            rows: Rows::new(bins, origin, StopReason::NAMES.len())?,
         })
     }
 

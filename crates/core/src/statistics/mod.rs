@@ -21,7 +21,7 @@ pub use moments::{Moments, Sums};
 pub use rows::{CREATES_ENERGY, Gains, Rows};
 
 /// A sink that counts the impacts that it receives in the grids of a [`Histogram`], which is shared with others.
-pub(crate) trait HistogramSink: crate::drop::Sink {
+pub(crate) trait HistogramSink<P: crate::record::Process>: crate::record::Sink<P> {
     /// Returns the other sums over the impacts, all of which are then in the grids.
     fn finish(self) -> Rows;
 }

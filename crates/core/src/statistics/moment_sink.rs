@@ -11,10 +11,9 @@ use super::recent::{
 };
 use super::rows::{CREATES_ENERGY, Rows};
 use crate::Error;
-use crate::drop::Plan;
-use crate::drop::StopReason;
-use crate::drop::{Impact, Meanwhile, PLACES, Pose, Sink, of_group};
+use crate::drop::{PLACES, of_group};
 use crate::memory::{filled, zeros};
+use crate::record::{Event, Meanwhile, Process, Sink};
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
 use std::ops::{IndexMut, Range};
@@ -31,7 +30,8 @@ pub(crate) struct MomentSink<'a, const EVEN: bool> {
     by: &'a By,
     columns: &'a Axis,
     fractions: &'a Axis,
-    plan: &'a Plan<'a>,
+    /// The unit of velocities, in m/s.
+    speed: f64,
     restitution: Vec<u32>,
     fraction: Vec<u32>,
     /// Sums since they were last moved to `own`: one for each row, one for the large values of each row, and some that are never
@@ -115,17 +115,18 @@ impl<'a, const EVEN: bool> MomentSink<'a, EVEN> {
     pub fn new(
         bins: &'a Bins,
         fractions: &'a Axis,
-        plan: &'a Plan<'a>,
+        (speed, origin): (f64, f64),
+        reasons: usize,
         shared: &'a Mutex<Histogram>,
     ) -> Result<Self, Error> {
         let rows = bins.rows();
         Ok(Self {
             shared,
-            own: Rows::new(bins, plan.run.origin())?,
+            own: Rows::new(bins, origin, reasons)?,
             by: &bins.by,
             columns: &bins.restitution,
             fractions,
-            plan,
+            speed,
             restitution: zeros(WHAT, rows * (bins.restitution.bins() + 1) + LANES)?,
             fraction: zeros(WHAT, rows * (fractions.bins() + 1) + LANES)?,
             rows: filled(WHAT, Recent::EMPTY, 2 * rows + LANES)?,
@@ -195,7 +196,7 @@ impl<const EVEN: bool> Meanwhile for MomentSink<'_, EVEN> {
     }
 }
 
-impl<const EVEN: bool> Sink for MomentSink<'_, EVEN> {
+impl<P: Process, const EVEN: bool> Sink<P> for MomentSink<'_, EVEN> {
     fn begin(&mut self) {
         let nowhere = [
             last(&self.restitution),
@@ -207,23 +208,20 @@ impl<const EVEN: bool> Sink for MomentSink<'_, EVEN> {
     }
 
     #[inline(always)]
-    fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
-        &mut self,
-        group: usize,
-        impact: &Impact<S, P, K>,
-    ) {
+    fn event<S: Simd, E: Event<S, K, Of = P>, const K: usize>(&mut self, group: usize, event: &E) {
         let width = Pack::<S, K>::WIDTH;
         if self.recently.add(width) {
             self.empty();
         }
         let lanes = of_group::<S, K>(group);
-        let simd = impact.time.simd();
-        let restitution = impact.restitution();
-        let fraction = impact.rotational_fraction();
+        let ((_, number), active) = (event.place(), event.active());
+        let simd = number.simd();
+        let restitution = event.restitution();
+        let fraction = event.rotational_fraction();
         let (columns, fractions) = (self.columns, self.fractions);
         let (row, column, fraction_column) = match self.by {
             By::Velocity(axis) => {
-                let velocity = impact.fall * self.plan.scales.speed;
+                let velocity = event.velocity() * self.speed;
                 let located = Axis::locate::<S, K, _, EVEN>(
                     [axis, columns, fractions],
                     [velocity, restitution, fraction],
@@ -231,23 +229,22 @@ impl<const EVEN: bool> Sink for MomentSink<'_, EVEN> {
                 (located[0], located[1], located[2])
             }
             By::Number(_) => {
-                let row = impact.number + ROUND;
+                let row = number + ROUND;
                 let located =
                     Axis::locate::<S, K, _, EVEN>([columns, fractions], [restitution, fraction]);
                 (row, located[0], located[1])
             }
         };
-        let (before, after) = (impact.energy_before, impact.energy_after);
-        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
+        let [before, after] = event.energies();
+        let gaining = active & (before * CREATES_ENERGY).lt(after);
         let offset = restitution - self.own.origin;
         let start = row - ROUND;
         let mut site = sites(columns, start, column);
         let mut fraction_site = sites(fractions, start, fraction_column);
         let (mut summed_row, mut unit) = (row, Pack::splat(simd, QUANTA));
-        let plain = impact.active & offset.abs().le(LARGEST) & fraction.le(1.0);
+        let plain = active & offset.abs().le(LARGEST) & fraction.le(1.0);
         if !plain.all() {
             let defined = restitution.abs().lt(Sums::LARGEST) & fraction.le(1.0);
-            let active = impact.active;
             let grid = (columns, &self.restitution[..]);
             site = all_sites(grid, start, column, defined, active);
             let grid = (fractions, &self.fraction[..]);
@@ -274,7 +271,7 @@ impl<const EVEN: bool> Sink for MomentSink<'_, EVEN> {
         put(&mut queue.low[lanes.clone()], low);
         put(&mut queue.high[lanes], high);
         if gaining.any() {
-            let ratio = gaining.select(impact.energy_ratio(), 0.0);
+            let ratio = gaining.select(event.energy_ratio(), 0.0);
             let row = gaining.select(row, nowhere(simd, &self.largest));
             for lane in 0..width {
                 let largest = &mut self.largest[whole(row.as_slice()[lane])];
@@ -286,12 +283,12 @@ impl<const EVEN: bool> Sink for MomentSink<'_, EVEN> {
         }
     }
 
-    fn end(&mut self, _: usize, _: usize, reason: StopReason) {
-        self.own.stops[reason as usize] += 1;
+    fn end(&mut self, _: usize, _: usize, reason: P::Reason) {
+        self.own.stops[P::number(reason)] += 1;
     }
 }
 
-impl<const EVEN: bool> HistogramSink for MomentSink<'_, EVEN> {
+impl<P: Process, const EVEN: bool> HistogramSink<P> for MomentSink<'_, EVEN> {
     fn finish(mut self) -> Rows {
         self.empty();
         self.own

@@ -4,7 +4,6 @@ use super::histogram::{Bins, WHAT};
 use super::moments::{Moments, Sums};
 use super::recent::FRACTION_QUANTA;
 use crate::Error;
-use crate::StopReason;
 use crate::memory::{copied, filled, zeros};
 
 /// Energy ratio above which an impact counts as creating kinetic energy. Rounding errors of the ratio are a few 10⁻¹⁵.
@@ -23,8 +22,8 @@ pub struct Rows {
     pub(super) fractions: Vec<u128>,
     /// Impacts that create energy.
     pub gains: Vec<Gains>,
-    /// Number of particles by [`StopReason`].
-    pub stops: [u64; StopReason::NAMES.len()],
+    /// Number of particles by the number of their stop reason.
+    pub stops: Vec<u64>,
 }
 
 /// The impacts whose energy ratio exceeds [`CREATES_ENERGY`].
@@ -52,8 +51,8 @@ impl Gains {
 }
 
 impl Rows {
-    /// The sums of no impacts, relative to `origin`.
-    pub(crate) fn new(bins: &Bins, origin: f64) -> Result<Self, Error> {
+    /// The sums of no impacts, relative to `origin`, of particles that may stop for so many reasons.
+    pub(crate) fn new(bins: &Bins, origin: f64, reasons: usize) -> Result<Self, Error> {
         let rows = bins.rows();
         let summed = bins.fraction.as_ref().map_or(0, |_| rows);
         Ok(Self {
@@ -62,7 +61,7 @@ impl Rows {
             sums: filled(WHAT, Sums::EMPTY, summed)?,
             fractions: zeros(WHAT, summed)?,
             gains: filled(WHAT, Gains::default(), rows)?,
-            stops: [0; StopReason::NAMES.len()],
+            stops: zeros(WHAT, reasons)?,
         })
     }
 
@@ -73,7 +72,7 @@ impl Rows {
             sums: copied(WHAT, &self.sums)?,
             fractions: copied(WHAT, &self.fractions)?,
             gains: copied(WHAT, &self.gains)?,
-            stops: self.stops,
+            stops: copied(WHAT, &self.stops)?,
         })
     }
 

@@ -4,8 +4,8 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use restitution_core::{
     Body, ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Law, Level, Monitor,
-    Normal, Plastic, Records, Resources, Rule, Run, Shape, Tabulated, TangentialRestitution,
-    Vector, Viscoelastic,
+    Normal, Plastic, Resources, Rule, Run, Shape, Tabulated, TangentialRestitution, Values, Vector,
+    Viscoelastic,
 };
 use std::f64::consts::PI;
 
@@ -43,13 +43,97 @@ pub fn paper(elongation: f64, law: Law<'_>) -> Run<'_> {
     }
 }
 
+/// Values of a variable, of their type in the tests.
+trait Of: Sized {
+    fn of(values: Values) -> Vec<Self>;
+}
+
+macro_rules! of {
+    ($($kind:ty: $of:ident),*) => {$(
+        impl Of for $kind {
+            fn of(values: Values) -> Vec<Self> {
+                let Values::$of(values) = values else { panic!("{values:?}") };
+                values
+            }
+        }
+    )*};
+}
+
+of! { f64: Numbers, i8: Flags, i32: Parts, i64: Counts }
+
+impl<const N: usize> Of for [f64; N] {
+    fn of(values: Values) -> Vec<Self> {
+        f64::of(values).as_chunks().0.to_vec()
+    }
+}
+
+macro_rules! records {
+    ($($name:ident: $kind:ty),* $(,)?) => {
+        /// The records of a run by name; a variable that was not recorded is empty.
+        #[derive(Debug, Clone, Default)]
+        pub struct Records {
+            pub reached: usize,
+            pub particle: Vec<i64>,
+            $(pub $name: Vec<$kind>,)*
+        }
+
+        impl From<restitution_core::Records> for Records {
+            fn from(mut given: restitution_core::Records) -> Self {
+                let mut found = Self {
+                    reached: given.reached,
+                    particle: given.particle.clone(),
+                    ..Self::default()
+                };
+                for (about, values) in given.per_impact().into_iter().chain(given.per_particle()) {
+                    match about.key {
+                        $(stringify!($name) => found.$name = Of::of(values),)*
+                        _ => {}
+                    }
+                }
+                found
+            }
+        }
+    };
+}
+
+records! {
+    time: f64,
+    impact_velocity: f64,
+    rebound_velocity: f64,
+    restitution: f64,
+    rotational_fraction: f64,
+    energy_ratio: f64,
+    angle: f64,
+    contact: i8,
+    part: i32,
+    height: f64,
+    axis: [f64; 3],
+    attitude: [f64; 4],
+    velocity_before: [f64; 3],
+    velocity_after: [f64; 3],
+    impacts: i64,
+    stop_reason: i8,
+    release_angle: f64,
+    release_height: f64,
+    release_azimuth: f64,
+    release_spin: [f64; 3],
+}
+
+impl Records {
+    /// Number of particles.
+    pub fn particles(&self) -> usize {
+        self.impacts.len()
+    }
+}
+
 pub fn simulate(run: &Run<'_>) -> Records {
     simulate_on(run, 0, &Monitor::default())
 }
 
 pub fn simulate_on(run: &Run<'_>, threads: usize, monitor: &Monitor) -> Records {
     let level = Level::best();
-    run.simulate(Resources { threads, level }, monitor).unwrap()
+    let records = run.simulate(Resources { threads, level }, monitor);
+    records.unwrap().into()
 }
 
 pub fn error_of(run: &Run<'_>) -> restitution_core::Error {

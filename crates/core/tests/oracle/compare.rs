@@ -3,7 +3,8 @@
 use super::impact::Rule;
 use super::random::Random;
 use super::{Impact, Noise, Particle, Release, World};
-use restitution_core::{Monitor, Orientation, Records, Resources, Run, Spin, Vector};
+use crate::common::Records;
+use restitution_core::{Monitor, Orientation, Resources, Run, Spin, Vector};
 
 /// Relative size of the noise: 32 units in the last place. Far above what either side rounds in one stage of an impact, so that it is the noise
 /// that spreads the copies, and small enough to follow ten or twenty impacts.
@@ -127,6 +128,7 @@ impl Case {
     pub fn records(&self, resources: Resources) -> Records {
         self.with_run(|run| run.simulate(resources, &Monitor::default()))
             .unwrap_or_else(|error| panic!("{error}: {self:#?}"))
+            .into()
     }
 
     /// How a particle is released, where that is not given as the product recorded it.

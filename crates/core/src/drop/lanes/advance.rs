@@ -6,9 +6,10 @@
 
 use super::collision::{Collisions, Dimension};
 use super::group::{Group, Lost, Release, Unconverged};
-use super::interleaved::{Idle, Meanwhile, is_interleaved, work_up};
+use super::interleaved::{Idle, is_interleaved, work_up};
 use super::passes::SearchOn;
 use crate::law::{Law, Respond, Response};
+use crate::record::Meanwhile;
 use crate::shape::{Body, Hull, Surface, with_hull};
 use crate::simd::Pack;
 use crate::simd::elementary::sincos_in_lanes;

@@ -3,7 +3,7 @@
 use super::advance::Advance;
 use super::collision::{Collisions, Dimension};
 use super::group::{Group, Lost, Release};
-use super::impact::Sink;
+use super::impact::ImpactSink;
 use super::interleaved::of_groups;
 use crate::drop::stop::{Limits, StopReason};
 use crate::shape::Body;
@@ -21,7 +21,7 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
     (body, limits): (&Body, Limits),
     cycle: &L,
     (release, mut particles): (&impl Release, Range<usize>),
-    sink: &mut impl Sink,
+    sink: &mut impl ImpactSink,
     go_on: impl Fn() -> bool,
 ) -> Result<(), Lost> {
     let mut groups = cycle.groups::<N>(simd);
@@ -88,7 +88,7 @@ fn in_use<S: Simd, T: Dimension>(groups: &mut [Group<S, T>]) -> &mut [Group<S, T
 
 /// Compiles [`Report`] for the SIMD level, and calls it.
 #[inline(always)]
-fn report<S: Simd, T: Dimension, K: Sink, const SETTLE: bool>(
+fn report<S: Simd, T: Dimension, K: ImpactSink, const SETTLE: bool>(
     simd: S,
     groups: &mut [Group<S, T>],
     (body, limits): (&Body, Limits),
@@ -112,7 +112,9 @@ struct Report<'a, S: Simd, T: Dimension, K, const SETTLE: bool> {
     sink: &'a mut K,
 }
 
-impl<S: Simd, T: Dimension, K: Sink, const SETTLE: bool> WithSimd for Report<'_, S, T, K, SETTLE> {
+impl<S: Simd, T: Dimension, K: ImpactSink, const SETTLE: bool> WithSimd
+    for Report<'_, S, T, K, SETTLE>
+{
     type Output = bool;
 
     #[inline(always)]
@@ -130,8 +132,8 @@ impl<S: Simd, T: Dimension, K: Sink, const SETTLE: bool> WithSimd for Report<'_,
 
 #[cfg(test)]
 mod tests {
-    use crate::drop::{Impact, Meanwhile, PLACES, Pose, Sink, StopReason};
-    use crate::drop::{Orientation, Plan, Run, bounce_block};
+    use crate::drop::{Bounces, Orientation, PLACES, Plan, Run, StopReason, bounce_block};
+    use crate::record::{Event, Meanwhile, Sink};
     use crate::simd::{Level, Pack};
     use crate::{Dumbbell, Law, Monitor, Spin, TangentialRestitution, Vector};
     use pulp::Simd;
@@ -154,15 +156,15 @@ mod tests {
         }
     }
 
-    impl Sink for Cancelling<'_> {
+    impl Sink<Bounces> for Cancelling<'_> {
         fn begin(&mut self) {}
 
-        fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
+        fn event<S: Simd, E: Event<S, K, Of = Bounces>, const K: usize>(
             &mut self,
             group: usize,
-            impact: &Impact<S, P, K>,
+            event: &E,
         ) {
-            impact.active.each(|lane| {
+            event.active().each(|lane| {
                 let place = group * Pack::<S, K>::WIDTH + lane;
                 assert!(!self.waits[place], "an impact is lost");
                 self.waits[place] = true;

@@ -5,7 +5,7 @@
 pub mod one_lane;
 
 use super::collision::{Collide, ContactPoint, Dimension};
-use super::impact::{Impact, Sink, SymmetricPose};
+use super::impact::{Impact, ImpactSink, SymmetricPose};
 use super::particles::Particles;
 use crate::Fault;
 use crate::contact::{
@@ -386,7 +386,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         number: usize,
         body: &Body,
         limits: Limits,
-        sink: &mut impl Sink,
+        sink: &mut impl ImpactSink,
     ) -> bool {
         let mut ended = self.particles.has_ended;
         if ended {
@@ -416,7 +416,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
             },
             active: landing,
         };
-        sink.impact(number, &impact);
+        sink.event(number, &impact);
         let waiting = self.is_behind.then(|| self.behind());
         self.particles.count(landing, clock, waiting);
         if limits.minimum_speed > 0.0 {

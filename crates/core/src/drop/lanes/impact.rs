@@ -1,9 +1,9 @@
-//! An impact as the bounce loop reports it, and the trait of its receivers.
+//! An impact as the bounce loop reports it, and its receivers.
 
-use super::interleaved::Meanwhile;
-use crate::drop::StopReason;
+use crate::drop::Bounces;
 use crate::math::Vectors;
 use crate::motion::SpatialState;
+use crate::record;
 use crate::shape::Body;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
@@ -32,26 +32,6 @@ pub(crate) struct Impact<S: Simd, P, const K: usize> {
     pub pose: P,
     /// The lanes that have an impact.
     pub active: Mask<S, K>,
-}
-
-impl<S: Simd, P, const K: usize> Impact<S, P, K> {
-    /// The coefficient of restitution (1).
-    #[inline(always)]
-    pub fn restitution(&self) -> Pack<S, K> {
-        self.rise / self.fall // (1)
-    }
-
-    /// E_rot/E_tot before the impact (12).
-    #[inline(always)]
-    pub fn rotational_fraction(&self) -> Pack<S, K> {
-        self.rotation / self.energy_before // (12)
-    }
-
-    /// Total kinetic energy after the impact divided by that before.
-    #[inline(always)]
-    pub fn energy_ratio(&self) -> Pack<S, K> {
-        self.energy_after / self.energy_before
-    }
 }
 
 /// Position and attitude of bodies at an impact, and their motion before and after it. A quantity that a body does not have is NaN: the
@@ -128,17 +108,7 @@ impl<S: Simd, const K: usize> Pose<S, K> for SymmetricPose<'_, S, K> {
     }
 }
 
-/// A receiver of impacts, which records or counts them.
-pub(crate) trait Sink: Meanwhile {
-    /// Announces a release: at no place is there an impact to be worked up.
-    fn begin(&mut self);
-    /// Receives an impact in each active lane of a group. What is left to be done with it is done before the next one of this group:
-    /// meanwhile, or by [`Meanwhile::settle`].
-    fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
-        &mut self,
-        group: usize,
-        impact: &Impact<S, P, K>,
-    );
-    /// Receives the end of a particle after `impacts` impacts.
-    fn end(&mut self, particle: usize, impacts: usize, reason: StopReason);
-}
+/// A receiver of impacts.
+pub(crate) trait ImpactSink: record::Sink<Bounces> {}
+
+impl<K: record::Sink<Bounces>> ImpactSink for K {}

@@ -17,5 +17,5 @@ pub(super) use group::GROUPS;
 #[cfg(feature = "one-lane")]
 pub use group::one_lane;
 pub(super) use group::{Lost, Release};
-pub(crate) use impact::{Impact, Pose, Sink};
-pub(crate) use interleaved::{Meanwhile, PLACES, of_group};
+pub(crate) use impact::{Impact, ImpactSink, Pose};
+pub(crate) use interleaved::{PLACES, of_group};

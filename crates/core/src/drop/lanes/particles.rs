@@ -1,7 +1,7 @@
 //! The particles of a group, one in each lane: which they are, how far they have come, and which have stopped.
 
 use super::group::{Release, Unconverged};
-use super::impact::Sink;
+use super::impact::ImpactSink;
 use crate::drop::stop::{COLLAPSE_RUN, StopReason, UNRESOLVED};
 use crate::simd::{LANES, Mask, Pack};
 use pulp::{Simd, WithSimd};
@@ -144,7 +144,7 @@ impl<S: Simd> Particles<S> {
 
     /// Hands number of impacts and stop reason of the particles that have stopped to the sink.
     #[cold]
-    pub fn close(&mut self, sink: &mut impl Sink) {
+    pub fn close(&mut self, sink: &mut impl ImpactSink) {
         self.ended.each(|lane| {
             let (particle, impacts) = self.trajectory(lane);
             sink.end(particle, impacts, self.reasons[lane]);

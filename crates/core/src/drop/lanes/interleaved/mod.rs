@@ -4,7 +4,7 @@
 //! the bounce loop are chains of vector arithmetic, in which one instruction waits for the result of another. A processor executes both at
 //! once if they stand next to each other in the program. This folder arranges that; docs/performance.md has the time that it saves.
 //!
-//! * **A queue** has a place for each lane of every group ([`PLACES`]). [`Sink::impact`](super::Sink::impact) computes in all lanes at once
+//! * **A queue** has a place for each lane of every group ([`PLACES`]). [`Sink::event`](crate::record::Sink::event) computes in all lanes at once
 //!   what is to be counted and leaves it at the places of its group, [`of_group`].
 //! * **Each stage works up one lane** ([`work_up`]). Eight stages take a group to its next impact, and a vector of AVX-512 has eight lanes, so
 //!   that the places of the group are free when it reports that impact. A lane without an impact is worked up like the others, into sites
@@ -18,6 +18,7 @@
 //! summed, in any order.
 
 use super::group::GROUPS;
+use crate::record::Meanwhile;
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
 use std::ops::Range;
@@ -37,23 +38,6 @@ pub(crate) fn of_group<S: Simd, const K: usize>(group: usize) -> Range<usize> {
 pub(super) fn of_groups<S: Simd>(groups: Range<usize>) -> Range<usize> {
     let width = Pack::<S, 1>::WIDTH;
     groups.start * width..groups.end * width
-}
-
-/// Work on impacts that wait in a queue.
-pub(crate) trait Meanwhile {
-    /// True if the paper's runs have a bounce loop of their own for this work.
-    const INTERLEAVED: bool;
-
-    /// Works up the impact at a place.
-    fn meanwhile(&mut self, place: usize);
-
-    /// Works up the impacts at these places.
-    #[inline(always)]
-    fn settle(&mut self, places: Range<usize>) {
-        for place in places {
-            self.meanwhile(place);
-        }
-    }
 }
 
 /// Stages from one impact to the next.

@@ -1,0 +1,301 @@
+//! The columns of a table: the values of a variable in one type of elements, a cell for each event or row.
+
+use super::Variable;
+use crate::math::Vectors;
+use crate::memory::zeros;
+use crate::simd::Pack;
+use crate::{Error, Value};
+use pulp::Simd;
+use std::ops::Range;
+
+/// The parameters that the size of a table follows from.
+pub(super) const ROOM: &str = "particles * impacts";
+
+/// Something for each type of elements that a column can have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Elements<N, F, P, C> {
+    /// Real numbers, as many in a row as the variable has components.
+    Numbers(N),
+    /// Numbers that stand for names.
+    Flags(F),
+    /// Numbers of parts of a body.
+    Parts(P),
+    /// Counts.
+    Counts(C),
+}
+
+/// A type of elements.
+pub type Element = Elements<(), (), (), ()>;
+/// The recorded values of a variable.
+pub type Values = Elements<Vec<f64>, Vec<i8>, Vec<i32>, Vec<i64>>;
+/// Slices of a column.
+pub(crate) type Slices<'a> = Elements<&'a mut [f64], &'a mut [i8], &'a mut [i32], &'a mut [i64]>;
+
+/// Does the same whatever the elements are.
+macro_rules! each {
+    ($elements:expr, $these:pat => $work:expr) => {
+        match $elements {
+            Elements::Numbers($these) => Elements::Numbers($work),
+            Elements::Flags($these) => Elements::Flags($work),
+            Elements::Parts($these) => Elements::Parts($work),
+            Elements::Counts($these) => Elements::Counts($work),
+        }
+    };
+}
+
+/// A type of the values of a variable.
+pub(crate) trait Stored: Copy {
+    /// Its elements.
+    const KIND: Element;
+    /// [`Variable::components`].
+    const COMPONENTS: &'static [&'static str] = &[];
+
+    /// Writes the values of some lanes into cells, pairs of a lane and a cell.
+    fn put(column: &mut Slices<'_>, cells: &[(usize, usize)], value: impl Fn(usize) -> Self);
+}
+
+/// The value where there was no event.
+trait Blank: Copy {
+    const NONE: Self;
+}
+
+/// Values of a variable in lanes, or one by itself.
+pub(crate) trait InLanes<T> {
+    fn lane(&self, lane: usize) -> T;
+}
+
+macro_rules! stored {
+    ($($number:ty: $kind:ident, $none:expr;)*) => {$(
+        impl Stored for $number {
+            const KIND: Element = Elements::$kind(());
+
+            #[inline(always)]
+            fn put(column: &mut Slices<'_>, cells: &[(usize, usize)], value: impl Fn(usize) -> Self) {
+                let Elements::$kind(column) = column else { unreachable!("elements of its kind") };
+                for &(lane, cell) in cells {
+                    column[cell] = value(lane);
+                }
+            }
+        }
+
+        impl Blank for $number {
+            const NONE: Self = $none;
+        }
+
+        impl<S: Simd, const K: usize> InLanes<$number> for Pack<S, K> {
+            #[inline(always)]
+            fn lane(&self, lane: usize) -> $number {
+                self.as_slice()[lane] as $number
+            }
+        }
+    )*};
+}
+
+stored! {
+    f64: Numbers, f64::NAN;
+    i8: Flags, 0;
+    i32: Parts, 0;
+    i64: Counts, 0;
+}
+
+impl<const N: usize> Stored for [f64; N] {
+    const KIND: Element = Elements::Numbers(());
+    const COMPONENTS: &'static [&'static str] = match N {
+        3 => &["x", "y", "z"],
+        _ => &["w", "x", "y", "z"],
+    };
+
+    #[inline(always)]
+    fn put(column: &mut Slices<'_>, cells: &[(usize, usize)], value: impl Fn(usize) -> Self) {
+        let Elements::Numbers(column) = column else {
+            unreachable!("elements of its kind")
+        };
+        for &(lane, cell) in cells {
+            column[N * cell..N * (cell + 1)].copy_from_slice(&value(lane));
+        }
+    }
+}
+
+impl<T: Stored> InLanes<T> for T {
+    fn lane(&self, _: usize) -> T {
+        *self
+    }
+}
+
+impl<S: Simd, const K: usize> InLanes<[f64; 3]> for Vectors<S, K> {
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> [f64; 3] {
+        let vector = self.lane(lane);
+        [vector.x, vector.y, vector.z]
+    }
+}
+
+impl<S: Simd, const K: usize> InLanes<[f64; 4]> for [Pack<S, K>; 4] {
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> [f64; 4] {
+        self.map(|part| part.as_slice()[lane])
+    }
+}
+
+/// Variables chosen among those of an event or of a row.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Columns(pub(super) Vec<bool>);
+
+impl Columns {
+    /// The variables for which this is true.
+    pub(crate) fn chosen(all: &[Variable], choose: impl Fn(&Variable) -> bool) -> Self {
+        Self(all.iter().map(choose).collect())
+    }
+
+    /// The variables of an event with these names.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a name that is not in `all`.
+    pub fn named<'a>(
+        all: &[Variable],
+        names: impl IntoIterator<Item = &'a str>,
+    ) -> Result<Self, Error> {
+        let mut columns = Self::chosen(all, |_| false);
+        for name in names {
+            match all.iter().position(|about| about.key == name) {
+                Some(place) => columns.0[place] = true,
+                None => {
+                    let known: Vec<_> = all.iter().map(|about| about.key).collect();
+                    return Err(Error::Parameter {
+                        name: "columns",
+                        value: Value::Name(name.to_owned()),
+                        allowed: format!("one of {}", known.join(", ")),
+                    });
+                }
+            }
+        }
+        Ok(columns)
+    }
+
+    /// Those of `all` that are chosen.
+    pub fn of<'a>(&self, all: &'a [Variable]) -> impl Iterator<Item = &'a Variable> {
+        let pairs = all.iter().zip(self.0.clone());
+        pairs.filter(|(_, chosen)| *chosen).map(|(about, _)| about)
+    }
+}
+
+/// A table: of every chosen variable a column, with as many cells in each row.
+#[derive(Debug, Clone)]
+pub(super) struct TableColumns {
+    pub all: &'static [Variable],
+    pub per_row: usize,
+    pub columns: Vec<Option<Values>>,
+}
+
+impl TableColumns {
+    /// A table of zeros, whose pages are not touched yet.
+    pub fn new(
+        all: &'static [Variable],
+        chosen: &Columns,
+        rows: usize,
+        per_row: usize,
+    ) -> Result<Self, Error> {
+        let column = |(about, chosen): (&Variable, &bool)| {
+            let size = rows * per_row * about.width();
+            chosen
+                .then(|| Ok(each!(about.kind, () => zeros(ROOM, size)?)))
+                .transpose()
+        };
+        let columns = all.iter().zip(&chosen.0).map(column);
+        Ok(Self {
+            all,
+            per_row,
+            columns: columns.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Calls `change` with every column and the number of its elements in a row.
+    fn change(&mut self, mut change: impl FnMut(&mut Values, usize)) {
+        for (about, column) in self.all.iter().zip(&mut self.columns) {
+            if let Some(column) = column {
+                change(column, about.width() * self.per_row);
+            }
+        }
+    }
+
+    /// Keeps the first rows, without touching memory that was not written to.
+    pub fn truncate(&mut self, rows: usize) {
+        self.change(|column, row| {
+            each!(column, these => these.truncate(rows * row));
+        });
+    }
+
+    /// Moves the first events of a row up to row `place`.
+    pub fn move_up(&mut self, row: usize, place: usize, events: usize) {
+        let per_row = self.per_row;
+        self.change(|column, size| {
+            let cells = row * size..row * size + events * (size / per_row);
+            each!(column, these => these.copy_within(cells.clone(), place * size));
+        });
+    }
+
+    /// The chosen variables with their values, which are moved out.
+    pub fn take(&mut self) -> Vec<(Variable, Values)> {
+        let columns = std::mem::take(&mut self.columns);
+        let found = self.all.iter().zip(columns);
+        found
+            .filter_map(|(about, values)| Some((*about, values?)))
+            .collect()
+    }
+
+    /// All rows.
+    pub fn rows(&mut self) -> TableRows<'_> {
+        let columns = self.columns.iter_mut();
+        TableRows {
+            all: self.all,
+            per_row: self.per_row,
+            columns: columns
+                .map(|column| Some(each!(column.as_mut()?, these => &mut these[..])))
+                .collect(),
+        }
+    }
+}
+
+/// TableRows of a table.
+pub(super) struct TableRows<'a> {
+    all: &'static [Variable],
+    pub per_row: usize,
+    pub columns: Vec<Option<Slices<'a>>>,
+}
+
+impl<'a> TableRows<'a> {
+    /// Splits off the first rows.
+    pub fn split(&mut self, rows: usize) -> Self {
+        let part = |(about, column): (&Variable, &mut Option<Slices<'a>>)| {
+            let size = rows * self.per_row * about.width();
+            Some(each!(column.as_mut()?, these => first(these, size)))
+        };
+        Self {
+            all: self.all,
+            per_row: self.per_row,
+            columns: self.all.iter().zip(&mut self.columns).map(part).collect(),
+        }
+    }
+
+    /// Fills these cells of a row with the value for no event.
+    pub fn blank(&mut self, row: usize, events: Range<usize>) {
+        fn fill<T: Blank>(cells: &mut [T]) {
+            cells.fill(T::NONE);
+        }
+        let start = row * self.per_row;
+        for (about, column) in self.all.iter().zip(&mut self.columns) {
+            if let Some(column) = column {
+                let [from, to] =
+                    [events.start, events.end].map(|event| (start + event) * about.width());
+                each!(column, these => fill(&mut these[from..to]));
+            }
+        }
+    }
+}
+
+/// Splits off the first cells of a slice.
+pub(super) fn first<'a, T>(slice: &mut &'a mut [T], cells: usize) -> &'a mut [T] {
+    let (first, rest) = std::mem::take(slice).split_at_mut(cells);
+    *slice = rest;
+    first
+}
