@@ -220,7 +220,7 @@ def test_what_no_roundness_gives_is_refused(change: dict[str, object], message: 
 
 def test_unknown_friction_is_between_none_and_sticking() -> None:
     """Half of the balls slide, half stick: mean and mean square of the errors are those of the two halves."""
-    given = {"drop": 0.1, "impacts": 12, "particles": 400, "roughness": 1e-8, "drag": None}
+    given: dict[str, Any] = {"drop": 0.1, "impacts": 12, "particles": 400, "roughness": 1e-8, "drag": None}
     ball = rs.from_roundness(6e-3, 6e-5)
     slides, sticks, unknown = (
         rs.error_budget(ball, law, **given).data

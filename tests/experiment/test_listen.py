@@ -271,7 +271,7 @@ def test_all_missing_options_are_said_at_once(ball: Path) -> None:
 )
 def test_other_units_are_asked_back(given: dict[str, float], said: str) -> None:
     with pytest.raises(ValueError, match=said):
-        Setting(**given)  # type: ignore[arg-type]
+        Setting(**given)
 
 
 def test_a_drop_in_centimetres_is_asked_back(tmp_path: Path) -> None:
