@@ -50,8 +50,8 @@ def warn(data: xr.Dataset, *, stacklevel: int = 2) -> None:
         warnings.warn(
             f"{data.attrs['law']} let the plane pull in {percent(pulls / impacts)} of the impacts "
             f"({pulls:,} of {impacts:,}), which no plane without adhesion can. The law does this: "
-            "Frictionless, Coulomb and ChatterjeeRuina cannot. CustomLaw(law, pull='stop' or 'clip') is "
-            "another rule",
+            "Frictionless and laws with a cone of friction, as Coulomb, cannot. "
+            "CustomLaw(law, pull='stop' or 'clip') is another rule",
             PullWarning,
             stacklevel=stacklevel + 1,
         )
