@@ -32,14 +32,9 @@ def test_every_public_name_is_in_the_api(module: str) -> None:
     assert listed == sorted(public)
 
 
-SHARED = {"Arc", "Balls", "Bounds", "Contact", "Flight", "Gap", "Instant", "Moments", "Sums", "Surface"}
-"""Names that still have two meanings in the core: of shapes and of the search."""
-
-
 def test_a_type_of_the_core_has_a_name_of_its_own() -> None:
     """One word, one thing: types that a file defines, public or not; associated types are not counted."""
     core = DOCS.parent / "crates/core/src"
     item = re.compile(r"^(?:pub(?:\([a-z]+\))? )?(?:struct|enum|trait|type|union) ([A-Z]\w*)", re.MULTILINE)
     names = [name for path in core.rglob("*.rs") for name in item.findall(path.read_text(encoding="utf-8"))]
-    twice = {name for name in names if names.count(name) > 1}
-    assert twice <= SHARED
+    assert {name for name in names if names.count(name) > 1} == set()

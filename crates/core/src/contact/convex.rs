@@ -1,12 +1,12 @@
 //! Supports of convex hulls whose normal turns along its tangent, **n** + s**n**′, and the first root of the bound that they make.
 
 use super::certify::{SHORTEST, TOUCHING};
-use super::plane::{Departure, Gap, Past, Step, first_root};
+use super::plane::{BackwardBound, Departure, GapExpansion, Step, first_root};
 use crate::math::Vector;
 use crate::motion::SpinBounds;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
-use crate::shape::{Band, Convex, ConvexSurface, Instant, Superellipsoid};
+use crate::shape::{Band, Convex, ConvexSurface, NormalMotion, Superellipsoid};
 
 /// A convex function h of s, the support of a part along the tangent of its normal.
 pub(super) trait Support {
@@ -27,17 +27,17 @@ pub(super) trait Support {
 
     /// Gap and rate.
     #[inline(always)]
-    fn opening(&self, at: &Instant) -> (f64, f64) {
+    fn opening(&self, at: &NormalMotion) -> (f64, f64) {
         let (size, slope) = self.tangent();
         (at.height - size, at.rate - slope)
     }
 
-    /// The step of a part of this number and bounds, as [`crate::shape::Skin`]'s.
+    /// The step of a part of this number and bounds, as [`crate::shape::RigidSurface`]'s.
     #[inline(always)]
     fn step(
         &self,
-        (part, bounds): (usize, Bounds),
-        at: &Instant,
+        (part, bounds): (usize, CurvatureBounds),
+        at: &NormalMotion,
         departure: Option<Departure>,
         most: f64,
     ) -> Step {
@@ -55,23 +55,23 @@ pub(super) trait Support {
             rate,
             closes: rate < 0.0 && length < most,
             bound: bounds.up_to(length),
-            alone: f64::INFINITY,
+            only_until: f64::INFINITY,
         }
     }
 
-    /// As [`crate::shape::Skin`]'s.
+    /// As [`crate::shape::RigidSurface`]'s.
     #[inline(always)]
-    fn past(&self, bound: f64, at: &Instant, since: f64) -> Past {
+    fn past(&self, bound: f64, at: &NormalMotion, since: f64) -> BackwardBound {
         #[cfg(test)]
         evaluations::add(Evaluation::Support);
         let (width, rate) = self.opening(at);
         let before = width - since * (rate + 0.5 * bound * since) - self.beyond_tangent(-since);
-        let gap = Gap {
+        let gap = GapExpansion {
             width,
             rate,
             acceleration: at.acceleration - self.second(),
         };
-        Past::new(gap, before, since)
+        BackwardBound::new(gap, before, since)
     }
 }
 
@@ -110,7 +110,7 @@ impl Length {
 
     /// |A**n**| of an ellipsoid with these semi-axes.
     #[inline(always)]
-    pub fn of_ellipsoid([a, b, c]: [f64; 3], at: &Instant) -> Self {
+    pub fn of_ellipsoid([a, b, c]: [f64; 3], at: &NormalMotion) -> Self {
         let stretched = |v: Vector| Vector::new(a * v.x, b * v.y, c * v.z);
         Self::new([at.up, at.turning, at.bending].map(stretched))
     }
@@ -163,7 +163,7 @@ pub(super) struct BandSupport<'a> {
 
 impl<'a> BandSupport<'a> {
     #[inline(always)]
-    pub fn new(band: &'a Band, at: &Instant) -> Self {
+    pub fn new(band: &'a Band, at: &NormalMotion) -> Self {
         let normal = [at.up, at.turning, at.bending];
         let along = normal.map(|v| -v.z);
         let across = Length::new(normal.map(|v| Vector::new(v.x, v.y, 0.0)));
@@ -224,14 +224,14 @@ impl Support for BandSupport<'_> {
 /// The support of a superellipsoid.
 pub(super) struct SuperellipsoidSupport<'a> {
     body: &'a Superellipsoid,
-    at: &'a Instant,
+    at: &'a NormalMotion,
     size: f64,
     slope: f64,
 }
 
 impl<'a> SuperellipsoidSupport<'a> {
     #[inline(always)]
-    pub fn new(body: &'a Superellipsoid, at: &'a Instant) -> Self {
+    pub fn new(body: &'a Superellipsoid, at: &'a NormalMotion) -> Self {
         let (size, place) = body.farthest(at.up);
         Self {
             body,
@@ -262,21 +262,21 @@ impl Support for SuperellipsoidSupport<'_> {
 
 /// Bounds M on −f″.
 #[derive(Clone, Copy)]
-pub(super) struct Bounds {
+pub(super) struct CurvatureBounds {
     /// For so long the first of them holds.
     near: f64,
     first: f64,
     whole: f64,
 }
 
-impl Bounds {
+impl CurvatureBounds {
     /// Of points up to `reach` from the centre of mass, with a ball of radius `inner` about it inside of the body.
     #[inline(always)]
-    fn new(turn: &SpinBounds, reach: f64, inner: f64) -> Self {
+    fn new(gravity: f64, turn: &SpinBounds, reach: f64, inner: f64) -> Self {
         Self {
             near: inner * turn.radian,
-            first: 1.0 + turn.across * reach,
-            whole: 1.0 + turn.whole * reach,
+            first: gravity + turn.across * reach,
+            whole: gravity + turn.whole * reach,
         }
     }
 
@@ -292,28 +292,36 @@ impl Bounds {
 }
 
 impl Convex {
-    /// As [`crate::shape::Skin`]'s.
+    /// As [`crate::shape::RigidSurface`]'s.
     #[inline(always)]
     pub(super) fn step(
         &self,
-        at: &Instant,
+        at: &NormalMotion,
         turn: &SpinBounds,
         departure: Option<Departure>,
         most: f64,
     ) -> Step {
         #[cfg(test)]
         evaluations::add(Evaluation::Support);
-        let mut moved = Instant::default();
+        let mut moved = NormalMotion::default();
         let own = self.own(at, &mut moved);
-        let bounds = |reach: f64| Bounds::new(turn, reach, self.inner);
+        let bounds = |reach: f64| CurvatureBounds::new(-at.acceleration, turn, reach, self.inner);
         self.surface.step(own, bounds, departure, most)
     }
 
-    /// As [`crate::shape::Skin`]'s.
+    /// As [`crate::shape::RigidSurface`]'s.
     #[inline(always)]
-    pub(super) fn past(&self, part: usize, at: &Instant, turn: &SpinBounds, since: f64) -> Past {
-        let mut moved = Instant::default();
-        let bound = |reach: f64| Bounds::new(turn, reach, self.inner).up_to(since);
+    pub(super) fn past(
+        &self,
+        part: usize,
+        at: &NormalMotion,
+        turn: &SpinBounds,
+        since: f64,
+    ) -> BackwardBound {
+        let mut moved = NormalMotion::default();
+        let bound = |reach: f64| {
+            CurvatureBounds::new(-at.acceleration, turn, reach, self.inner).up_to(since)
+        };
         self.surface
             .past(part, self.own(at, &mut moved), bound, since)
     }
@@ -329,17 +337,17 @@ impl Convex {
     }
 
     #[inline(always)]
-    pub(super) fn acceleration(&self, part: usize, at: &Instant) -> f64 {
-        let mut moved = Instant::default();
+    pub(super) fn acceleration(&self, part: usize, at: &NormalMotion) -> f64 {
+        let mut moved = NormalMotion::default();
         let own = self.own(at, &mut moved);
         own.acceleration - self.surface.second(part, own)
     }
 
-    pub(super) fn another_touches(&self, departure: Departure, at: &Instant) -> bool {
+    pub(super) fn another_touches(&self, departure: Departure, at: &NormalMotion) -> bool {
         let ConvexSurface::Bands(bands) = &self.surface else {
             return false;
         };
-        let mut moved = Instant::default();
+        let mut moved = NormalMotion::default();
         let own = self.own(at, &mut moved);
         let opening = |band: &Band| BandSupport::new(band, own).opening(own);
         let still = opening(&bands[departure.part]).1;
@@ -354,8 +362,8 @@ impl ConvexSurface {
     #[inline(always)]
     fn step(
         &self,
-        at: &Instant,
-        bounds: impl Fn(f64) -> Bounds,
+        at: &NormalMotion,
+        bounds: impl Fn(f64) -> CurvatureBounds,
         departure: Option<Departure>,
         most: f64,
     ) -> Step {
@@ -381,7 +389,13 @@ impl ConvexSurface {
     }
 
     #[inline(always)]
-    fn past(&self, part: usize, at: &Instant, bound: impl Fn(f64) -> f64, since: f64) -> Past {
+    fn past(
+        &self,
+        part: usize,
+        at: &NormalMotion,
+        bound: impl Fn(f64) -> f64,
+        since: f64,
+    ) -> BackwardBound {
         match self {
             Self::Ellipsoid(axes) => Length::of_ellipsoid(*axes, at).past(bound(1.0), at, since),
             Self::Superellipsoid(body) => {
@@ -409,7 +423,7 @@ impl ConvexSurface {
 
     /// h″ of a part.
     #[inline(always)]
-    fn second(&self, part: usize, at: &Instant) -> f64 {
+    fn second(&self, part: usize, at: &NormalMotion) -> f64 {
         match self {
             Self::Ellipsoid(axes) => Length::of_ellipsoid(*axes, at).second(),
             Self::Superellipsoid(body) => SuperellipsoidSupport::new(body, at).second(),
@@ -427,7 +441,7 @@ impl Step {
         rate: 0.0,
         closes: false,
         bound: 1.0,
-        alone: f64::INFINITY,
+        only_until: f64::INFINITY,
     };
 
     /// The shorter one, of the first part of both if they are equal.
@@ -438,7 +452,7 @@ impl Step {
         } else {
             (self, other)
         };
-        first.alone = first.alone.min(later.length);
+        first.only_until = first.only_until.min(later.length);
         first
     }
 }
@@ -448,7 +462,7 @@ impl Step {
 #[inline(always)]
 fn convex_root<S: Support + ?Sized>(
     support: &S,
-    (width, rate, bounds): (f64, f64, Bounds),
+    (width, rate, bounds): (f64, f64, CurvatureBounds),
     most: f64,
 ) -> f64 {
     let mut bound = bounds.first;

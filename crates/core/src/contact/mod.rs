@@ -2,11 +2,12 @@
 
 mod certify;
 mod convex;
+mod first;
 mod lanes;
 mod plane;
 
-pub(crate) use certify::{INVISIBLE, LAST};
+pub(crate) use first::{Fall, FirstContact, NoContact};
 pub(crate) use lanes::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
 };
-pub(crate) use plane::{Departure, Gap};
+pub(crate) use plane::Departure;

@@ -17,7 +17,7 @@
 //!
 //! Steps to the first root of these bounds converge quadratically to the contact. The same bounds hold backward in time, with −f′ for f′ and −**n**′
 //! for **n**′, so that the search may look on behind a step: where f, f′ and f″ expect the contact, or else almost as far again. If the bound from
-//! there is positive where the step ended, nothing touched in between ([`Skin::past`]), or an overlap began there once only, as late as the bound
+//! there is positive where the step ended, nothing touched in between ([`RigidSurface::past`]), or an overlap began there once only, as late as the bound
 //! says; if not, the search goes on at the end of the step. Where the contact is so near that the bound will be positive, the body is looked at
 //! there without a step before. To where f″ expects it the search converges with the third order. It ends when what is left of the gap is below
 //! the resolution. An overlap at the end of a step is rounding: one that approaches is a contact now, one that separates is none.
@@ -27,7 +27,7 @@ use crate::math::Vector;
 use crate::motion::SpinBounds;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
-use crate::shape::{ConvexSurface, Effort, Instant, Least, Point, Skin};
+use crate::shape::{ConvexSurface, Least, NormalMotion, Point, Pruning, RigidSurface};
 
 /// Far from the contact nodes of the tree are not looked into where they allow a step of this part of the length that is found.
 const ENOUGH: f64 = 0.7;
@@ -54,12 +54,12 @@ pub(crate) struct Step {
     /// M.
     pub bound: f64,
     /// For so long no other part touches.
-    pub alone: f64,
+    pub only_until: f64,
 }
 
 /// The gap of a part with its first two derivatives.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Gap {
+pub(crate) struct GapExpansion {
     pub width: f64,
     pub rate: f64,
     pub acceleration: f64,
@@ -67,16 +67,16 @@ pub(crate) struct Gap {
 
 /// What is known of the flight before a time, and the gap then.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Past {
-    pub gap: Gap,
+pub(crate) struct BackwardBound {
+    pub gap: GapExpansion,
     /// The part did not touch before so long ago, 0 if it does not overlap; none if it may have.
     pub clear: Option<f64>,
 }
 
-impl Past {
+impl BackwardBound {
     /// From the lower bound of the gap so long ago. The bound is concave, so that it lies above its chord.
     #[inline(always)]
-    pub fn new(gap: Gap, before: f64, since: f64) -> Self {
+    pub fn new(gap: GapExpansion, before: f64, since: f64) -> Self {
         let clear = (before > 0.0).then(|| {
             if gap.width < 0.0 {
                 since * gap.width / (gap.width - before)
@@ -88,7 +88,7 @@ impl Past {
     }
 }
 
-impl Gap {
+impl GapExpansion {
     /// When it will be 0, or was if it is negative, by f + f′s + f″s²/2, in that of the two forms of the root in which no digits cancel; no
     /// number if it never is.
     #[inline(always)]
@@ -109,10 +109,10 @@ impl Gap {
     /// When it will be 0, or was, if that is after `certain` and so near to it that a look from there will certify the time between: M times that
     /// is less than the speed of the contact.
     #[inline(always)]
-    pub fn certainly_closes(&self, certain: f64, turn: f64) -> Option<f64> {
+    pub fn certainly_closes(&self, certain: f64, bound: f64) -> Option<f64> {
         let ahead = self.closes();
         let speed = -(self.rate + self.acceleration * ahead);
-        (certain < ahead && (ahead - certain) * (1.0 + turn) <= speed).then_some(ahead)
+        (certain < ahead && (ahead - certain) * bound <= speed).then_some(ahead)
     }
 }
 
@@ -120,7 +120,7 @@ impl Gap {
 #[inline(always)]
 pub(super) fn first_root(width: f64, rate: f64, bound: f64) -> f64 {
     let acceleration = -bound;
-    let root = Gap {
+    let root = GapExpansion {
         width,
         rate,
         acceleration,
@@ -133,13 +133,13 @@ pub(super) fn first_root(width: f64, rate: f64, bound: f64) -> f64 {
     }
 }
 
-impl Skin {
+impl RigidSurface {
     /// A step that passes no contact, no longer than `most` > 0. `departure` holds at the beginning of a flight; `near` is a part
-    /// that may be the first, and no other touches for as long as it is alone.
+    /// that may be the first, and no other touches for so long.
     #[inline(always)]
     pub(crate) fn step(
         &self,
-        at: &Instant,
+        at: &NormalMotion,
         turn: &SpinBounds,
         departure: Option<Departure>,
         near: Option<(usize, f64)>,
@@ -151,7 +151,7 @@ impl Skin {
                     Some(left) if left.part == part => (0.0, left.speed),
                     _ => point.opening(at),
                 };
-                let bound = |reach: f64| 1.0 + turn.whole * reach;
+                let bound = |reach: f64| turn.whole * reach - at.acceleration;
                 // The parabola of the least gap, the least rate and the largest M of a node lies below those of all its balls.
                 let exceeds = |least: &Least, limit: f64| {
                     let below = limit * (least.rate - 0.5 * limit * bound(least.reach));
@@ -166,31 +166,31 @@ impl Skin {
                         first_root(width, rate, bound)
                     }
                 };
-                let found = |part: usize, root: f64, alone: f64| {
+                let found = |part: usize, root: f64, only_until: f64| {
                     let point = &balls.points()[part];
                     let (width, rate) = opening(part, point);
                     Step {
-                        length: root.min(alone),
+                        length: root.min(only_until),
                         part,
                         width,
                         rate,
-                        closes: root <= alone && rate < 0.0,
+                        closes: root <= only_until && rate < 0.0,
                         bound: bound(f64::from(point.reach)),
-                        alone,
+                        only_until,
                     }
                 };
-                if let Some((part, alone)) = near {
+                if let Some((part, only_until)) = near {
                     #[cfg(test)]
                     evaluations::add(Evaluation::Gap);
                     let root = cost(part, &balls.points()[part], f64::INFINITY);
-                    if root < alone {
-                        return found(part, root, alone);
+                    if root < only_until {
+                        return found(part, root, only_until);
                     }
                 }
-                let effort = Effort {
+                let effort = Pruning {
                     most,
                     enough: ENOUGH,
-                    short: SHORT * at.rate.abs() / (1.0 + turn.whole),
+                    short: SHORT * at.rate.abs() / bound(1.0),
                 };
                 let first = balls.cheapest(at, near.map(|near| near.0), effort, exceeds, cost);
                 found(first.place, first.cost, first.others)
@@ -209,21 +209,27 @@ impl Skin {
 
     /// When in the time `since` before this one a part can have touched.
     #[inline(always)]
-    pub(crate) fn past(&self, part: usize, at: &Instant, turn: &SpinBounds, since: f64) -> Past {
+    pub(crate) fn past(
+        &self,
+        part: usize,
+        at: &NormalMotion,
+        turn: &SpinBounds,
+        since: f64,
+    ) -> BackwardBound {
         match self {
             Self::Points(balls) => {
                 #[cfg(test)]
                 evaluations::add(Evaluation::Gap);
                 let point = &balls.points()[part];
                 let (width, rate) = point.opening(at);
-                let bound = 1.0 + turn.whole * f64::from(point.reach);
+                let bound = turn.whole * f64::from(point.reach) - at.acceleration;
                 let before = width - since * (rate + 0.5 * bound * since);
-                let gap = Gap {
+                let gap = GapExpansion {
                     width,
                     rate,
                     acceleration: point.acceleration(at),
                 };
-                Past::new(gap, before, since)
+                BackwardBound::new(gap, before, since)
             }
             Self::Convex(convex) => convex.past(part, at, turn, since),
         }
@@ -244,7 +250,7 @@ impl Skin {
 
     /// f″ of a part.
     #[inline(always)]
-    pub(crate) fn acceleration(&self, part: usize, at: &Instant) -> f64 {
+    pub(crate) fn acceleration(&self, part: usize, at: &NormalMotion) -> f64 {
         match self {
             Self::Points(balls) => balls.points()[part].acceleration(at),
             Self::Convex(convex) => convex.acceleration(part, at),
@@ -252,7 +258,7 @@ impl Skin {
     }
 
     /// True if some part but one overlaps, or touches within rounding, and approaches faster than that one.
-    pub(crate) fn another_touches(&self, departure: Departure, at: &Instant) -> bool {
+    pub(crate) fn another_touches(&self, departure: Departure, at: &NormalMotion) -> bool {
         match self {
             Self::Points(balls) => {
                 let still = balls.points()[departure.part].opening(at).1;
@@ -266,7 +272,7 @@ impl Skin {
                         f64::INFINITY
                     }
                 };
-                balls.cheapest(at, None, Effort::EXACT, exceeds, cost).cost < still
+                balls.cheapest(at, None, Pruning::EXACT, exceeds, cost).cost < still
             }
             Self::Convex(convex) => convex.another_touches(departure, at),
         }
@@ -285,7 +291,7 @@ impl Skin {
 mod tests {
     use super::*;
     use crate::random::pair;
-    use crate::shape::Balls;
+    use crate::shape::BallTree;
 
     fn vector(seed: u64, index: u64) -> Vector {
         let ((x, y), (z, _)) = (pair(seed, 2 * index), pair(seed, 2 * index + 1));
@@ -294,7 +300,7 @@ mod tests {
 
     /// Balls in a cube or on a sphere, near and far from each other, as many as are in one leaf or in a tree of ten levels, some among balls that
     /// are much larger.
-    fn balls(seed: u64, count: u64) -> Balls {
+    fn balls(seed: u64, count: u64) -> BallTree {
         let point = |i: u64| {
             let mut place = vector(seed, i) * 0.5;
             if seed.is_multiple_of(2) {
@@ -308,7 +314,7 @@ mod tests {
             };
             Point::new(place, size * pair(seed, i + 100_000).0, i as usize)
         };
-        Balls::new("spheres", (0..count).map(point).collect()).unwrap()
+        BallTree::new("spheres", (0..count).map(point).collect()).unwrap()
     }
 
     /// Steps are no longer than those of the exhaustive search, and no shorter than the part that is enough; one that is taken for a contact
@@ -319,8 +325,8 @@ mod tests {
         let (mut exact, mut alone) = (0, 0);
         for count in [1, 2, 8, 9, 16, 17, 100, 1000, 5000] {
             for seed in 0..40 {
-                let skin = Skin::Points(balls(seed, count));
-                let Skin::Points(balls) = &skin else {
+                let skin = RigidSurface::Points(balls(seed, count));
+                let RigidSurface::Points(balls) = &skin else {
                     unreachable!()
                 };
                 let up = vector(seed, 1_000_000);
@@ -339,12 +345,13 @@ mod tests {
                     (0.2, 0.5),
                     (0.0, 0.2),
                 ] {
-                    let at = Instant {
+                    let at = NormalMotion {
                         height: support + height,
                         rate,
+                        acceleration: -1.0,
                         up,
                         turning: up.cross(vector(seed, 1_000_001)),
-                        ..Instant::default()
+                        ..NormalMotion::default()
                     };
                     let turn = &SpinBounds::new(0.5, 2.0 * pair(seed, 7).0);
                     let length = |point: &Point| {
@@ -362,15 +369,19 @@ mod tests {
                     assert!(step.length <= least && step.length >= ENOUGH * least);
                     let others = balls.points().iter().enumerate();
                     let others = others.filter(|&(part, _)| part != step.part);
-                    assert!(others.clone().all(|(_, point)| length(point) >= step.alone));
+                    assert!(
+                        others
+                            .clone()
+                            .all(|(_, point)| length(point) >= step.only_until)
+                    );
                     let cut = skin.step(&at, turn, None, near, 0.25 * least);
                     assert!(cut.length == 0.25 * least && (!cut.closes || least == 0.0));
-                    if step.alone > step.length {
+                    if step.only_until > step.length {
                         let same = skin.step(
                             &at,
                             turn,
                             None,
-                            Some((step.part, step.alone)),
+                            Some((step.part, step.only_until)),
                             f64::INFINITY,
                         );
                         assert_eq!(

@@ -3,23 +3,15 @@
 use super::lanes::{Impact, ImpactSink, Lost, Pose};
 use super::stop::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use crate::Fault;
-use crate::contact::{Departure, Gap, INVISIBLE, LAST, MOST_STEPS};
+use crate::contact::{Departure, Fall, FirstContact, NoContact};
 use crate::law::{Compliance, Law, Respond, Rule};
 use crate::math::{Quaternion, Symmetric, Vector, Vectors};
-use crate::motion::Rotation;
-#[cfg(test)]
-use crate::shape::evaluations::{self, Evaluation};
-use crate::shape::{Instant, Rigid, up};
-use crate::simd::elementary::RANGE;
+use crate::shape::{Rigid, up};
 use crate::simd::{Mask, Pack, one};
 use pulp::{Scalar, Simd, WithSimd};
 
-/// Most angle by which the search looks on behind what is certified.
-const FAR: f64 = 1.0;
-/// From so far behind a step, in its length, it nearly always can be certified that nothing touched.
-const BACK: f64 = 0.9;
-/// Most angle of an expansion of the rotation: the fourth power of it is less than rounding.
-const SOON: f64 = 1.0 / 8192.0;
+/// g, in units of itself.
+const GRAVITY: f64 = 1.0;
 
 /// Position and motion of a particle, in the core's units. The horizontal position is omitted, because the motion does not depend on it.
 #[derive(Debug, Clone, Copy)]
@@ -43,15 +35,15 @@ pub(super) struct Bouncing<'a> {
 }
 
 /// A flight and the impact that ends it, compiled for each SIMD level.
-struct Flight<'a, 'b> {
+struct FlightAndImpact<'a, 'b> {
     bouncing: &'a Bouncing<'b>,
     start: &'a RigidState,
     departure: Option<Departure>,
     chance: Option<f64>,
 }
 
-impl WithSimd for Flight<'_, '_> {
-    type Output = Result<(Contact, Bounce), NoImpact>;
+impl WithSimd for FlightAndImpact<'_, '_> {
+    type Output = Result<(Landing, Bounce), NoImpact>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
@@ -64,7 +56,7 @@ impl WithSimd for Flight<'_, '_> {
 }
 
 /// A contact: the flight time to it, the state then, and the part that touches.
-struct Contact {
+struct Landing {
     time: f64,
     state: RigidState,
     part: usize,
@@ -111,7 +103,7 @@ impl Bouncing<'_> {
             if !go_on() {
                 break StopReason::Interrupted;
             }
-            let flight = Flight {
+            let flight = FlightAndImpact {
                 bouncing: self,
                 start: &state,
                 departure,
@@ -147,167 +139,34 @@ impl Bouncing<'_> {
         Ok(())
     }
 
-    /// The first contact of the flight from a state, in which a part may be leaving the plane.
+    /// The first contact of the flight from a state, in which a part may be leaving the plane. The height is that at which the part touches.
     #[inline(always)]
     fn first_contact(
         &self,
         start: &RigidState,
         departure: Option<Departure>,
-    ) -> Result<Contact, NoImpact> {
-        let body = self.body;
-        let mut rotation = Rotation::new(body.top, start.attitude, start.spin);
-        let turn = &body.top.bounds(start.spin);
-        let fastest = turn.fastest;
-        if let Some(left) = departure.filter(|left| left.speed <= 0.0)
-            && self.rests(start, left)
-        {
-            return Err(NoImpact::Ends(StopReason::Collapse));
-        }
-        // While the centre of mass is higher than the body reaches, nothing touches.
-        let above = start.velocity.z * start.velocity.z + 2.0 * (start.height - 1.0);
-        let root = above.max(0.0).sqrt();
-        let (up_at, down_at) = (start.velocity.z - root, start.velocity.z + root);
-        let skip = |time: f64| {
-            if above > 0.0 && up_at <= time {
-                time.max(down_at)
-            } else {
-                time
-            }
+    ) -> Result<Landing, NoImpact> {
+        let fall = Fall {
+            height: start.height,
+            speed: start.velocity.z,
+            gravity: GRAVITY,
         };
-        // The rotation where it was last computed, not expanded.
-        let mut known = (0.0, (start.attitude, start.spin));
-        // Nothing touches up to `certain`; `time`, at which the body is looked at, may be later. `near` is the part that may be first, and the time
-        // up to which no other touches.
-        let (mut certain, mut time) = (0.0, 0.0);
-        let mut near = departure.map(|left| (left.part, 0.0));
-        let looks_back = body.skin.looks_back();
-        let mut looks_on = looks_back;
-        for _ in 0..MOST_STEPS {
-            if fastest * time > RANGE {
-                return Err(NoImpact::Ends(StopReason::NeverLands));
-            }
-            let (attitude, spin) = if fastest * (time - known.0).abs() <= SOON {
-                let (attitude, spin) = known.1;
-                body.top.expanded(attitude, spin, time - known.0)
-            } else {
-                #[cfg(test)]
-                evaluations::add(Evaluation::Attitude);
-                known = (time, rotation.at(time));
-                known.1
-            };
-            let from = time;
-            let at = self.instant(start, from, attitude, spin);
-            let within =
-                |later: f64, alone: f64| later <= alone && fastest * (later - from).abs() <= FAR;
-            let contact = |gap: Gap, certain: f64, alone: f64| {
-                let contact = from + gap.certainly_closes(certain - from, turn.whole)?;
-                within(contact, alone).then_some(contact)
-            };
-            if let Some((part, alone)) = near.filter(|_| certain < time) {
-                let past = body.skin.past(part, &at, turn, time - certain);
-                let Some(ago) = past.clear else {
-                    (time, looks_on) = (certain, false);
-                    continue;
-                };
-                certain = time - ago;
-                let ahead = past.gap.closes();
-                let end = time + ahead;
-                if (1.0 + turn.whole) * ahead * ahead <= INVISIBLE
-                    && (ahead < 0.0 || past.gap.rate < 0.0 && ahead <= LAST * end)
-                    && end <= alone
-                {
-                    let then = body.top.expanded(attitude, spin, ahead);
-                    return Ok(self.land(start, end, part, then, turn.whole));
-                }
-                // Nothing more is to be known here where the contact is, or if there was one since `certain`.
-                if let Some(contact) = contact(past.gap, certain, alone) {
-                    time = contact;
-                    continue;
-                } else if ago > 0.0 {
-                    time = certain;
-                    continue;
-                }
-            }
-            let left = departure.filter(|_| time == 0.0);
-            let clear = if above > 0.0 && time < up_at {
-                up_at - time
-            } else {
-                f64::INFINITY
-            };
-            let beside = near.map(|(part, alone)| (part, alone - time));
-            let step = body.skin.step(&at, turn, left, beside, clear);
-            let end = time + step.length;
-            let square = step.length * step.length;
-            if step.closes && step.bound * square <= INVISIBLE && step.length <= LAST * end {
-                // The body turns by as little, but where all of it is near its centre of mass.
-                let then = if turn.whole * square <= INVISIBLE {
-                    body.top.expanded(attitude, spin, step.length)
-                } else {
-                    rotation.at(end)
-                };
-                return Ok(self.land(start, end, step.part, then, turn.whole));
-            }
-            certain = skip(end.max(time * (1.0 + f64::EPSILON)));
-            let alone = time + step.alone;
-            near = Some((step.part, alone));
-            time = certain;
-            if !std::mem::replace(&mut looks_on, looks_back) || alone <= certain {
-                continue;
-            }
-            let gap = Gap {
-                width: step.width,
-                rate: step.rate,
-                acceleration: body.skin.acceleration(step.part, &at),
-            };
-            // Or else almost as far behind `certain` as that is from here.
-            let further = certain + BACK * (certain - from);
-            let expected = from + gap.closes();
-            let soon = certain < expected && expected < further;
-            if let Some(contact) = contact(gap, certain, alone) {
-                time = contact;
-            } else if !soon && within(further, alone) {
-                time = further;
-            }
-        }
-        Err(NoImpact::Unconverged)
-    }
-
-    /// The body at a time of the flight from `start`.
-    #[inline(always)]
-    fn instant(
-        &self,
-        start: &RigidState,
-        time: f64,
-        attitude: Quaternion,
-        spin: Vector,
-    ) -> Instant {
-        let up = up(attitude);
-        let turning = up.cross(spin);
-        let speed = start.velocity.z;
-        Instant {
-            height: start.height + time * (speed - 0.5 * time),
-            rate: speed - time,
-            acceleration: -1.0,
-            up,
-            turning,
-            bending: turning.cross(spin) + up.cross(self.body.top.change(spin)),
-        }
-    }
-
-    /// The state at a contact. The height is that at which the part touches.
-    #[inline(always)]
-    fn land(
-        &self,
-        start: &RigidState,
-        time: f64,
-        part: usize,
-        (attitude, spin): (Quaternion, Vector),
-        turn: f64,
-    ) -> Contact {
+        let rotation = (start.attitude, start.spin);
+        let search = FirstContact::new(self.body, fall, rotation, departure);
+        let bound = search.bound();
+        let touch = search.find().map_err(|none| match none {
+            NoContact::Rests => NoImpact::Ends(StopReason::Collapse),
+            NoContact::Never => NoImpact::Ends(StopReason::NeverLands),
+            NoContact::Unconverged => NoImpact::Unconverged,
+        })?;
+        let ((attitude, spin), time) = (touch.rotation, touch.time);
         let normal = up(attitude);
-        let pull = Vector::new(self.slope, 0.0, -1.0);
-        let arm = self.body.skin.nearest(part, normal, normal.cross(spin));
-        Contact {
+        let pull = Vector::new(self.slope, 0.0, -1.0) * GRAVITY;
+        let arm = self
+            .body
+            .skin
+            .nearest(touch.part, normal, normal.cross(spin));
+        Ok(Landing {
             time,
             state: RigidState {
                 height: -normal.dot(arm),
@@ -315,22 +174,15 @@ impl Bouncing<'_> {
                 attitude,
                 spin,
             },
-            part,
+            part: touch.part,
             arm,
-            size: (1.0 + turn) * time * time,
-        }
-    }
-
-    /// True if the part on the plane, which has no normal speed, stays there: f″ ≤ 0, and no other part is about to touch as well.
-    fn rests(&self, state: &RigidState, left: Departure) -> bool {
-        let at = self.instant(state, 0.0, state.attitude, state.spin);
-        let skin = &self.body.skin;
-        skin.acceleration(left.part, &at) <= 0.0 && !skin.another_touches(left, &at)
+            size: bound * time * time,
+        })
     }
 
     /// The motion after a contact; where ε_n scatters it is drawn with a uniform number.
     #[inline(always)]
-    fn collide(&self, contact: &Contact, chance: Option<f64>) -> Result<Bounce, Fault> {
+    fn collide(&self, contact: &Landing, chance: Option<f64>) -> Result<Bounce, Fault> {
         let RigidState {
             velocity,
             attitude,
@@ -392,7 +244,7 @@ impl Bouncing<'_> {
     fn report(
         &self,
         (particle, number, clock): (usize, usize, f64),
-        contact: &Contact,
+        contact: &Landing,
         bounce: &Bounce,
         sink: &mut impl ImpactSink,
     ) {
@@ -474,6 +326,7 @@ mod tests {
     use super::*;
     use crate::drop::{About, Orientation, Run, Spin};
     use crate::random::pair;
+    use crate::shape::evaluations;
     use crate::shape::{AnyBody, Heights, Inertia, Matter, RigidBall, Roughness};
     use crate::{Frictionless, Level, Monitor, Resources};
 
@@ -548,21 +401,10 @@ mod tests {
     }
 
     /// From a time at which a part has just touched or is about to, its gap is followed back along the exact rotation: it is positive where
-    /// [`Past::clear`](crate::contact::Past) says so, and its second difference is f″.
+    /// the bound backward says so, and its second difference is f″.
     #[test]
     fn nothing_touched_where_the_past_is_clear() {
         for (name, body) in &bodies()[..7] {
-            let law = Law::new(1.0, Frictionless).unwrap();
-            let bouncing = Bouncing {
-                body,
-                law: &law,
-                slope: 0.0,
-                limits: Limits {
-                    impacts: 1,
-                    minimum_speed: 0.0,
-                    settled: 0.0,
-                },
-            };
             let (mut clear, mut overlaps) = (0, 0);
             for i in 0..500 {
                 let uniform = |number: u64| pair(7, 8 * i + number);
@@ -571,24 +413,22 @@ mod tests {
                 let ((a, b), (c, d)) = (uniform(2), uniform(3));
                 let attitude = Quaternion::new(a - 0.5, b - 0.5, c - 0.5, d - 0.5).normalized();
                 let ((speed, time), (since, width)) = (uniform(4), uniform(5));
-                let mut rotation = Rotation::new(body.top, attitude, spin);
                 let turn = &body.top.bounds(spin);
-                let mut start = RigidState {
-                    height: 0.0,
-                    velocity: Vector::new(0.0, 0.0, -2.0 * speed),
-                    attitude,
-                    spin,
+                let from = |height: f64| {
+                    let fall = Fall {
+                        height,
+                        speed: -2.0 * speed,
+                        gravity: GRAVITY,
+                    };
+                    FirstContact::new(body, fall, (attitude, spin), None)
                 };
-                let mut at = |start: &RigidState, time: f64| {
-                    let (attitude, spin) = rotation.at(time);
-                    bouncing.instant(start, time, attitude, spin)
-                };
-                let now = at(&start, time);
-                start.height = body.skin.support(now.up) - now.height + 0.02 * (width - 0.5);
-                let now = at(&start, time);
+                let now = from(0.0).look(time).at;
+                let low = body.skin.support(now.up) - now.height + 0.02 * (width - 0.5);
+                let mut flight = from(low);
+                let now = flight.look(time).at;
                 let part = body.skin.step(&now, turn, None, None, f64::INFINITY).part;
                 let mut gap = |time: f64| {
-                    let at = at(&start, time);
+                    let at = flight.look(time).at;
                     at.height + at.up.dot(body.skin.nearest(part, at.up, at.turning))
                 };
                 let past = body.skin.past(part, &now, turn, since);

@@ -1,6 +1,6 @@
 //! Clumps: unions of balls.
 
-use super::rigid::{CENTRE, Moments, Rigid, RigidBall, TENSOR};
+use super::rigid::{CENTRE, Rigid, RigidBall, TENSOR, VolumeMoments};
 use super::{BodyKind, Form, check_density};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
@@ -69,7 +69,7 @@ impl Rigid {
             Matter::Sum => balls
                 .iter()
                 .map(whole)
-                .fold(Moments::default(), Moments::and),
+                .fold(VolumeMoments::default(), VolumeMoments::and),
         };
         Self::of_balls(moments.inertia(density), "spheres", balls.iter().copied())
     }
@@ -90,11 +90,11 @@ pub(super) fn check(balls: &[RigidBall]) -> Result<(), Error> {
 }
 
 /// A whole ball.
-fn whole(ball: &RigidBall) -> Moments {
+fn whole(ball: &RigidBall) -> VolumeMoments {
     let r = ball.radius;
     let volume = 4.0 / 3.0 * PI * (r * r * r);
     let second = 0.2 * volume * (r * r);
-    Moments::about(volume, ball.centre, Symmetric::diagonal([second; 3]))
+    VolumeMoments::about(volume, ball.centre, Symmetric::diagonal([second; 3]))
 }
 
 /// Largest difference between an interval and its halves, relative to the volume of the balls.
@@ -117,17 +117,17 @@ struct Cap {
 /// μ on the sphere of radius 1, its free arcs and the integrals of 1, x, y, x², xy, y² over them are known. Between the heights where an arc
 /// begins to exist or meets another one they are analytic but for roots at the ends, which the substitution μ ∝ sin(πs/2) removes, so that
 /// Gauss's quadrature converges exponentially; intervals are halved until the halves agree with the whole.
-pub(super) fn union(balls: &[RigidBall]) -> (Moments, f64) {
+pub(super) fn union(balls: &[RigidBall]) -> (VolumeMoments, f64) {
     let all = balls
         .iter()
         .map(whole)
-        .fold(Moments::default(), Moments::and);
+        .fold(VolumeMoments::default(), VolumeMoments::and);
     let origin = all.first / all.content;
     let mut sums = [0.0; 10];
     let mut error = 0.0;
     for (i, own) in balls.iter().enumerate() {
         let Some(caps) = caps(balls, i) else { continue };
-        let surface = Surface {
+        let surface = CappedSphere {
             place: own.centre - origin,
             radius: own.radius,
             caps,
@@ -139,15 +139,15 @@ pub(super) fn union(balls: &[RigidBall]) -> (Moments, f64) {
     }
     let [content, x, y, z, xx, yy, zz, xy, xz, yz] = sums;
     let second = Symmetric::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
-    let centred = Moments {
+    let centred = VolumeMoments {
         content,
         first: Vector::new(x, y, z),
         second,
     };
     // Moved back to where the balls are.
     let centre = centred.first / content;
-    let own = Moments::about(-content, centre, second).second;
-    let moved = Moments::about(content, centre + origin, own);
+    let own = VolumeMoments::about(-content, centre, second).second;
+    let moved = VolumeMoments::about(content, centre + origin, own);
     (moved, error / all.content)
 }
 
@@ -186,13 +186,13 @@ fn caps(balls: &[RigidBall], i: usize) -> Option<Vec<Cap>> {
 }
 
 /// The sphere of a ball, with what covers it.
-struct Surface {
+struct CappedSphere {
     place: Vector,
     radius: f64,
     caps: Vec<Cap>,
 }
 
-impl Surface {
+impl CappedSphere {
     /// The heights μ from −1 to 1 between which all integrals over circles are analytic.
     fn heights(&self) -> Vec<f64> {
         let mut heights = vec![-1.0, 1.0];

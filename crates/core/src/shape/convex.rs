@@ -2,7 +2,7 @@
 
 use super::revolved::Band;
 use super::superellipsoid::Superellipsoid;
-use super::tree::Instant;
+use super::tree::NormalMotion;
 use crate::math::{Quaternion, Vector};
 
 /// A convex surface in a body, in units of R.
@@ -37,9 +37,9 @@ pub(crate) struct Frame {
 impl Frame {
     /// The body in the axes of the surface. From its origin the height is z − **n**·**c**.
     #[inline(always)]
-    pub fn own(&self, at: &Instant) -> Instant {
+    pub fn own(&self, at: &NormalMotion) -> NormalMotion {
         let [up, turning, bending] = [at.up, at.turning, at.bending].map(|v| self.axes.rotate(v));
-        Instant {
+        NormalMotion {
             height: at.height - self.centre.dot(up),
             rate: at.rate - self.centre.dot(turning),
             acceleration: at.acceleration - self.centre.dot(bending),
@@ -94,7 +94,7 @@ impl Convex {
 
     /// The body in the axes of the surface, in `moved` where these are others.
     #[inline(always)]
-    pub fn own<'a>(&self, at: &'a Instant, moved: &'a mut Instant) -> &'a Instant {
+    pub fn own<'a>(&self, at: &'a NormalMotion, moved: &'a mut NormalMotion) -> &'a NormalMotion {
         let Some(frame) = self.frame else { return at };
         *moved = frame.own(at);
         moved
@@ -102,11 +102,11 @@ impl Convex {
 
     /// The distance from the centre of mass to the lowest place, in the direction against `up`.
     pub fn support(&self, up: Vector) -> f64 {
-        let at = Instant {
+        let at = NormalMotion {
             up,
-            ..Instant::default()
+            ..NormalMotion::default()
         };
-        let mut moved = Instant::default();
+        let mut moved = NormalMotion::default();
         let own = self.own(&at, &mut moved);
         self.surface.support(own.up) - own.height
     }

@@ -1,6 +1,6 @@
 //! Eggs: two spherical caps, joined by an arc that is tangent to both.
 
-use super::revolved::{Arc, Place, norm};
+use super::revolved::{Place, ProfileArc, norm};
 use super::rigid::{CENTRE, Rigid, TENSOR};
 use super::{BodyKind, Form};
 use crate::Error;
@@ -81,17 +81,17 @@ impl Rigid {
         let upper = towards(caps[0], [1.0, 0.0]);
         let lower = towards(caps[1], [-1.0, 0.0]);
         let outline = [
-            Arc {
+            ProfileArc {
                 centre: caps[0],
                 radius: tip,
                 ends: [[1.0, 0.0], upper],
             },
-            Arc {
+            ProfileArc {
                 centre,
                 radius,
                 ends: [upper, lower],
             },
-            Arc {
+            ProfileArc {
                 centre: caps[1],
                 radius: blunt,
                 ends: [lower, [-1.0, 0.0]],

@@ -32,14 +32,14 @@ pub(crate) use convex::{Convex, ConvexSurface};
 pub use revolution::*;
 pub(crate) use revolved::Band;
 pub use rigid::{Inertia, Rigid, RigidBall};
-pub(crate) use rigid::{Skin, up};
+pub(crate) use rigid::{RigidSurface, up};
 pub use rough::{Heights, Roughness};
 pub(crate) use superellipsoid::Superellipsoid;
 pub(crate) use top::Symmetry;
 pub use top::Top;
 #[cfg(test)]
-pub(crate) use tree::{Balls, evaluations};
-pub(crate) use tree::{Effort, Instant, Least, Point};
+pub(crate) use tree::{BallTree, evaluations};
+pub(crate) use tree::{Least, NormalMotion, Point, Pruning};
 
 /// An entry of the table of bodies.
 #[derive(Debug)]

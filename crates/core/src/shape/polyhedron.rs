@@ -1,6 +1,6 @@
 //! Convex polyhedra.
 
-use super::rigid::{CENTRE, Inertia, Moments, Rigid, RigidBall, TENSOR, vectors};
+use super::rigid::{CENTRE, Inertia, Rigid, RigidBall, TENSOR, VolumeMoments, vectors};
 use super::{BodyKind, Form, check_density, hull};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
@@ -89,7 +89,7 @@ pub(super) fn solid(
         .iter()
         .fold(Vector::default(), |sum, &i| sum + points[i])
         / vertices.len() as f64;
-    let mut moments = Moments::default();
+    let mut moments = VolumeMoments::default();
     for corners in triangles {
         let [a, b, c] = corners.map(|i| points[i] - inside);
         let volume = counted(a.dot(b.cross(c)) / 6.0);
@@ -104,14 +104,14 @@ pub(super) fn solid(
 }
 
 /// The tetrahedron of the origin and three other corners: ∫**x**⊗**x** = V/20 (Σ**x**ᵢ⊗**x**ᵢ + **s**⊗**s**), **s** = Σ**x**ᵢ.
-fn tetrahedron(volume: f64, corners: [Vector; 3]) -> Moments {
+fn tetrahedron(volume: f64, corners: [Vector; 3]) -> VolumeMoments {
     let [a, b, c] = corners;
     let sum = a + b + c;
     let second = [a, b, c, sum]
         .map(|v| Symmetric::square(v, volume / 20.0))
         .into_iter()
         .fold(Symmetric::default(), Symmetric::add);
-    Moments {
+    VolumeMoments {
         content: volume,
         first: sum * (0.25 * volume),
         second,

@@ -1,7 +1,7 @@
 //! Solids of revolution with any profile.
 
 use super::convex::{Convex, ConvexSurface};
-use super::rigid::{CENTRE, Inertia, Rigid, Skin, TENSOR};
+use super::rigid::{CENTRE, Inertia, Rigid, RigidSurface, TENSOR};
 use super::{BodyKind, Form, check_density};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
@@ -153,13 +153,13 @@ impl Band {
 
 /// An arc of an outline, in m: its centre, its radius, and the directions from its centre to its beginning and its end.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Arc {
+pub(super) struct ProfileArc {
     pub centre: Place,
     pub radius: f64,
     pub ends: [Place; 2],
 }
 
-impl Arc {
+impl ProfileArc {
     fn point(centre: Place) -> Self {
         Self {
             centre,
@@ -178,7 +178,7 @@ impl Arc {
 }
 
 /// The integrals of r²/2, z r²/2, z² r²/2 and r⁴/4 over z.
-type Sums = [f64; 4];
+type ProfileIntegrals = [f64; 4];
 
 impl Rigid {
     /// The solid that a polygon of points (z, r), in m, makes when it turns about the axis r = 0. The lines from its ends to the axis
@@ -192,13 +192,13 @@ impl Rigid {
             Error::unless(z.is_finite(), "profile", z, allowed)?;
             Error::unless(r.is_finite() && r >= 0.0, "profile", r, allowed)?;
         }
-        let outline: Vec<_> = profile.iter().copied().map(Arc::point).collect();
+        let outline: Vec<_> = profile.iter().copied().map(ProfileArc::point).collect();
         Self::of_outline(&outline, &hull(profile), density)
     }
 
     /// Returns the rims of a solid of revolution that can touch, (z, r) in m, in the order of their numbers.
     pub fn rims(&self) -> Vec<[f64; 2]> {
-        let Skin::Convex(Convex {
+        let RigidSurface::Convex(Convex {
             surface: ConvexSurface::Bands(bands),
             frame,
             ..
@@ -220,8 +220,8 @@ impl Rigid {
 
     /// The solid that an outline makes, of which only these arcs can touch.
     pub(super) fn of_outline(
-        outline: &[Arc],
-        touching: &[Arc],
+        outline: &[ProfileArc],
+        touching: &[ProfileArc],
         density: f64,
     ) -> Result<Self, Error> {
         check_density(density)?;
@@ -239,7 +239,7 @@ impl Rigid {
             tensor: Symmetric::diagonal([transverse, transverse, axial]),
         };
         let band = |scale: f64| {
-            move |arc: &Arc| {
+            move |arc: &ProfileArc| {
                 let [z, r] = arc.centre;
                 Band::new(
                     [(z - centre) / scale, r / scale],
@@ -252,12 +252,12 @@ impl Rigid {
         let unit = unit.fold(0.0, f64::max);
         let bands = touching.iter().map(band(unit)).collect();
         let surface = Convex::new(ConvexSurface::Bands(bands));
-        Self::new(inertia, unit, |_| Ok(Skin::Convex(surface)))
+        Self::new(inertia, unit, |_| Ok(RigidSurface::Convex(surface)))
     }
 }
 
 /// The points of the convex hull of a profile and its mirror image that are not on the other side, from the pole at +z.
-fn hull(profile: &[Place]) -> Vec<Arc> {
+fn hull(profile: &[Place]) -> Vec<ProfileArc> {
     let mut points = profile.to_vec();
     points.sort_by(|a, b| b[0].total_cmp(&a[0]).then(b[1].total_cmp(&a[1])));
     let mut chain: Vec<Place> = Vec::new();
@@ -274,13 +274,13 @@ fn hull(profile: &[Place]) -> Vec<Arc> {
             chain.push(point);
         }
     }
-    chain.into_iter().map(Arc::point).collect()
+    chain.into_iter().map(ProfileArc::point).collect()
 }
 
 /// Those of the solid that an outline makes, with z from `origin`.
-fn sums(outline: &[Arc], origin: f64) -> Sums {
+fn sums(outline: &[ProfileArc], origin: f64) -> ProfileIntegrals {
     let mut sums = [0.0; 4];
-    let mut add = |parts: Sums| {
+    let mut add = |parts: ProfileIntegrals| {
         for (sum, part) in sums.iter_mut().zip(parts) {
             *sum += part;
         }
@@ -307,7 +307,7 @@ fn sums(outline: &[Arc], origin: f64) -> Sums {
 }
 
 /// Those of a frustum.
-fn line([z, a]: Place, [end, b]: Place, origin: f64) -> Sums {
+fn line([z, a]: Place, [end, b]: Place, origin: f64) -> ProfileIntegrals {
     let (z, dz) = (z - origin, end - z);
     let (aa, ab, bb) = (a * a, a * b, b * b);
     let zeroth = (aa + ab + bb) / 3.0;

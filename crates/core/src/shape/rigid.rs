@@ -2,7 +2,7 @@
 
 use super::convex::Convex;
 use super::top::Top;
-use super::tree::{Balls, Effort, Instant, Least, Point};
+use super::tree::{BallTree, Least, NormalMotion, Point, Pruning};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Parameter};
 use crate::math::{Quaternion, Symmetric, Vector};
@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 
 /// Volume, or mass, with its first and second moments: the integrals of 1, **x** and **x**⊗**x**.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Moments {
+pub(super) struct VolumeMoments {
     pub content: f64,
     pub first: Vector,
     pub second: Symmetric,
@@ -40,9 +40,9 @@ pub struct RigidBall {
 
 /// The parts of a body that can touch.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Skin {
+pub(crate) enum RigidSurface {
     /// Balls, or the vertices of a polyhedron.
-    Points(Balls),
+    Points(BallTree),
     Convex(Convex),
 }
 
@@ -61,10 +61,10 @@ pub struct Rigid {
     /// The principal moments over mR².
     pub top: Top,
     /// The parts that can touch, in units of R and the principal axes.
-    pub(crate) skin: Skin,
+    pub(crate) skin: RigidSurface,
 }
 
-impl Moments {
+impl VolumeMoments {
     /// Those of a part of mass `content` about its own centre, with these second moments about it, moved there.
     pub fn about(content: f64, centre: Vector, second: Symmetric) -> Self {
         Self {
@@ -186,7 +186,7 @@ impl Rigid {
             for (number, point) in points.iter_mut().enumerate() {
                 *point = Point::new(back.rotate(point.place) / unit, point.radius / unit, number);
             }
-            Ok(Skin::Points(Balls::new(what, points)?))
+            Ok(RigidSurface::Points(BallTree::new(what, points)?))
         })
     }
 
@@ -195,7 +195,7 @@ impl Rigid {
     /// # Errors
     /// [`Error::Memory`].
     pub fn balls(&self) -> Result<Vec<RigidBall>, Error> {
-        let Skin::Points(balls) = &self.skin else {
+        let RigidSurface::Points(balls) = &self.skin else {
             return Ok(Vec::new());
         };
         let none = RigidBall {
@@ -216,7 +216,7 @@ impl Rigid {
     pub(super) fn new(
         inertia: Inertia,
         unit: f64,
-        skin: impl FnOnce(Quaternion) -> Result<Skin, Error>,
+        skin: impl FnOnce(Quaternion) -> Result<RigidSurface, Error>,
     ) -> Result<Self, Error> {
         let (top, axes) = principal(&inertia, unit)?;
         Ok(Self {
@@ -233,7 +233,7 @@ impl Rigid {
     /// # Errors
     /// Unless the mass is positive, and the tensor is that of a body.
     pub fn with_inertia(self, inertia: Inertia) -> Result<Self, Error> {
-        let Skin::Convex(convex) = &self.skin else {
+        let RigidSurface::Convex(convex) = &self.skin else {
             return Self::of_balls(inertia, "points", self.balls()?.into_iter());
         };
         let shift = self
@@ -245,7 +245,7 @@ impl Rigid {
         Self::new(inertia, unit, |axes| {
             let turn = self.axes.inverse() * axes;
             let moved = convex.with_frame(turn, shift / self.unit, unit / self.unit);
-            Ok(Skin::Convex(moved))
+            Ok(RigidSurface::Convex(moved))
         })
     }
 
@@ -264,12 +264,12 @@ impl Rigid {
     /// one that comes down first as the normal changes with `turning`. All are in the axes that the body was given in.
     pub fn nearest(&self, number: usize, up: Vector, turning: Vector) -> Vector {
         let part = match &self.skin {
-            Skin::Points(balls) => {
+            RigidSurface::Points(balls) => {
                 let mut points = balls.points().iter();
                 let place = points.position(|point| point.number as usize == number);
                 place.expect("the number of a part")
             }
-            Skin::Convex(_) => number,
+            RigidSurface::Convex(_) => number,
         };
         let back = self.axes.inverse();
         let nearest = self
@@ -295,17 +295,17 @@ pub(crate) fn up(attitude: Quaternion) -> Vector {
     )
 }
 
-impl Skin {
+impl RigidSurface {
     /// The distance from the centre of mass to the lowest part, in the direction against `up`.
     pub(crate) fn support(&self, up: Vector) -> f64 {
         match self {
             Self::Points(balls) => {
-                let at = Instant {
+                let at = NormalMotion {
                     up,
-                    ..Instant::default()
+                    ..NormalMotion::default()
                 };
                 let exceeds = |least: &Least, limit: f64| least.gap > limit;
-                let lowest = balls.cheapest(&at, None, Effort::EXACT, exceeds, |_, point, _| {
+                let lowest = balls.cheapest(&at, None, Pruning::EXACT, exceeds, |_, point, _| {
                     point.opening(&at).0
                 });
                 -lowest.cost

@@ -136,7 +136,7 @@ impl Rigid {
             .map(|ball| ball.radius)
             .fold(f64::INFINITY, f64::min);
         roughness.check(smallest)?;
-        let surface = Surface::new(balls, barrel);
+        let surface = FreeSurface::new(balls, barrel);
         let free = surface.draw(roughness.seed, 0).is_some();
         Error::unless(
             free,
@@ -193,7 +193,7 @@ impl Roughness<'_> {
     }
 
     /// The ball that is asperity `i`.
-    fn asperity(&self, surface: &Surface<'_>, i: usize) -> RigidBall {
+    fn asperity(&self, surface: &FreeSurface<'_>, i: usize) -> RigidBall {
         let (place, normal) = surface.draw(self.seed, i as u64).unwrap_or_default();
         RigidBall {
             centre: place + normal * (self.height(i) - self.radius),
@@ -234,7 +234,7 @@ impl Roughness<'_> {
 }
 
 /// The free surface of balls, and of the barrel between two.
-struct Surface<'a> {
+struct FreeSurface<'a> {
     balls: &'a [RigidBall],
     /// Up to each ball and the barrel, the part of the area of all before any is covered.
     shares: Vec<f64>,
@@ -251,7 +251,7 @@ struct Barrel {
     radius: f64,
 }
 
-impl<'a> Surface<'a> {
+impl<'a> FreeSurface<'a> {
     fn new(balls: &'a [RigidBall], barrel: bool) -> Self {
         let barrel = match balls {
             [one, other] if barrel => Barrel::new(one, other),

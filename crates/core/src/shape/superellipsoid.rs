@@ -10,7 +10,7 @@
 
 use super::convex::{Convex, ConvexSurface};
 use super::ellipsoid::SEMI_AXES;
-use super::rigid::{CENTRE, Inertia, Rigid, Skin, TENSOR};
+use super::rigid::{CENTRE, Inertia, Rigid, RigidSurface, TENSOR};
 use super::{BodyKind, Form, check_density};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
@@ -258,6 +258,6 @@ impl Rigid {
         let unit = reach(n1, [reach(n2, [a * a, b * b]), c * c]).sqrt() * (1.0 + 1e-15);
         let body = Superellipsoid::new(semi_axes.map(|axis| axis / unit), exponents);
         let surface = Convex::new(ConvexSurface::Superellipsoid(body));
-        Self::new(inertia, unit, |_| Ok(Skin::Convex(surface)))
+        Self::new(inertia, unit, |_| Ok(RigidSurface::Convex(surface)))
     }
 }

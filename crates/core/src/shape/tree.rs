@@ -8,7 +8,7 @@
 //!
 //! r − **n**·(**p** − **c**) = a cos α + r − **n**·**b** ≤ (a + r) cos α + r(1 − cos α) + b sin α.
 //!
-//! With the largest a + r, r and b this is the bound of a disc. Balls on a curved surface lie in the paraboloid a + r + b²/2c ≤ t about the same
+//! With the largest a + r, r and b this is the bound of a disc. BallTree on a curved surface lie in the paraboloid a + r + b²/2c ≤ t about the same
 //! axis, which is as thin as the surface: (a + r) cos α + b sin α ≤ (t − b²/2c) cos α + b sin α, which is largest at b = c tan α or at the
 //! largest b. A node has the bound that is lower. And r − **n**·(**p** − **c**) ≤ max r + max|**p** − **c**| for every **n**.
 
@@ -22,7 +22,7 @@ use pulp::Scalar;
 
 /// Most balls of a leaf.
 const LEAF: usize = 16;
-/// Balls are in front of the tree, and asked one by one, if they are more than so many times as large as all but [`LEAF`].
+/// BallTree are in front of the tree, and asked one by one, if they are more than so many times as large as all but [`LEAF`].
 const LARGE: f64 = 4.0;
 /// Most levels of a tree.
 const DEEPEST: usize = 16;
@@ -74,7 +74,7 @@ struct Quarters {
 
 /// The balls of a body.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Balls {
+pub(crate) struct BallTree {
     points: Vec<Point>,
     /// The number of those in front of the tree.
     large: usize,
@@ -93,7 +93,7 @@ pub(crate) struct Least {
 
 /// A body over the plane at one time of its flight.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Instant {
+pub(crate) struct NormalMotion {
     /// Height of the centre of mass, its rate and its acceleration.
     pub height: f64,
     pub rate: f64,
@@ -116,7 +116,7 @@ impl Point {
 
     /// Gap and rate.
     #[inline(always)]
-    pub fn opening(&self, at: &Instant) -> (f64, f64) {
+    pub fn opening(&self, at: &NormalMotion) -> (f64, f64) {
         let (n, p, w) = (at.up, self.place, at.turning);
         (
             at.height + (n.x * p.x + n.y * p.y + n.z * p.z) - self.radius,
@@ -126,7 +126,7 @@ impl Point {
 
     /// f″.
     #[inline(always)]
-    pub fn acceleration(&self, at: &Instant) -> f64 {
+    pub fn acceleration(&self, at: &NormalMotion) -> f64 {
         at.acceleration + self.place.dot(at.bending)
     }
 }
@@ -194,7 +194,7 @@ impl Quarters {
 
     /// The bounds for the balls of each, where |**n**′| is `turning`.
     #[inline(always)]
-    fn least(&self, at: &Instant, turning: f64) -> Bounds {
+    fn least(&self, at: &NormalMotion, turning: f64) -> FourBounds {
         let (n, w) = (at.up, at.turning);
         let [x, y, z] = [0, 1, 2].map(|i| four(&self.middle[i]));
         let signed = four(&self.far);
@@ -213,7 +213,7 @@ impl Quarters {
         let lower = surface + ((1.0 + COSINE) - cosine) * radius;
         let round = spread + radius;
         let below = across.lt(0.0).select(round.min(lower), round);
-        Bounds {
+        FourBounds {
             gap: across - below + at.height,
             rate: w.x * x + w.y * y + w.z * z - turning * spread + at.rate,
             reach: far + spread,
@@ -225,7 +225,7 @@ impl Quarters {
 type Four = Pack<Scalar, 4>;
 
 /// What bounds the balls of four nodes.
-struct Bounds {
+struct FourBounds {
     gap: Four,
     rate: Four,
     reach: Four,
@@ -297,7 +297,7 @@ fn divide(points: &mut [Point], front: usize) -> (&mut [Point], &mut [Point]) {
     points.split_at_mut(front)
 }
 
-impl Balls {
+impl BallTree {
     /// The balls in an order that depends on nothing but them; `what` is for the error.
     pub fn new(what: &'static str, mut points: Vec<Point>) -> Result<Self, Error> {
         let large = large_first(&mut points);
@@ -339,9 +339,9 @@ impl Balls {
     #[inline(always)]
     pub fn cheapest(
         &self,
-        at: &Instant,
+        at: &NormalMotion,
         near: Option<usize>,
-        effort: Effort,
+        effort: Pruning,
         exceeds: impl Fn(&Least, f64) -> bool,
         cost: impl Fn(usize, &Point, f64) -> f64,
     ) -> Cheapest {
@@ -443,7 +443,7 @@ impl Balls {
 
 /// How far a search goes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Effort {
+pub(crate) struct Pruning {
     /// What costs more is not looked for.
     pub most: f64,
     /// Nodes are not looked into where all balls cost more than this part of the best, unless that is below `short`: then others are looked
@@ -452,10 +452,10 @@ pub(crate) struct Effort {
     pub short: f64,
 }
 
-/// See [`Effort::short`].
+/// See [`Pruning::short`].
 const BEYOND: f64 = 1.0625;
 
-impl Effort {
+impl Pruning {
     /// The one that costs least, whatever it is.
     pub const EXACT: Self = Self {
         most: f64::INFINITY,
@@ -491,7 +491,7 @@ impl Cheapest {
     fn leaves_out(
         &mut self,
         node: &Least,
-        effort: Effort,
+        effort: Pruning,
         exceeds: &impl Fn(&Least, f64) -> bool,
     ) -> bool {
         let (balls, nodes) = effort.limits(self.cost);
