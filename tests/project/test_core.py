@@ -12,7 +12,7 @@ def test_a_folder_of_the_core_imports_only_those_above_it() -> None:
     rows = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8").split("### `crates/core/src`")[1]
     order = re.findall(r"^\| `(\w+)(?:/|\.rs)` \|", rows.split("\n###")[0], re.MULTILINE)
     root = (CORE / "lib.rs").read_text(encoding="utf-8")
-    exported = {}
+    exported: dict[str, str] = {}
     for folder, names in re.findall(r"^pub use (\w+)::([^;]*);", root, re.MULTILINE):
         exported |= dict.fromkeys(re.findall(r"\w+", names), folder)
     for path in CORE.rglob("*.rs"):
