@@ -303,9 +303,12 @@ fn hull(points: Vec<[f64; 3]>) -> Vec<[usize; 3]> {
     convex_hull(&points).unwrap_or_default()
 }
 
+/// Points, and triangles of their numbers.
+type Polyhedron = (Vec<[f64; 3]>, Vec<[usize; 3]>);
+
 /// Points and triangles of a polyhedron with this name and these parameters: what there is to draw of it.
 #[pyfunction]
-fn faces(name: &str, given: Vec<Option<Given<'_>>>) -> PyResult<(Vec<[f64; 3]>, Vec<[usize; 3]>)> {
+fn faces(name: &str, given: Vec<Option<Given<'_>>>) -> PyResult<Polyhedron> {
     let BodyKind::Rigid(kind) = entry(name)? else {
         return Ok((vec![], vec![]));
     };

@@ -52,7 +52,7 @@ pub(super) const CLUMP: BodyKind = BodyKind::Rigid(Kind {
             ("union", _) | (_, false) => Matter::Union,
             (other, _) => Error::chosen("inertia", other, &[("union", Matter::Union)])?,
         };
-        Rigid::clump(&balls, given.number(1), matter).map(Form::Body)
+        Rigid::clump(&balls, given.number(1), matter).map(Form::from)
     },
 });
 

@@ -21,7 +21,7 @@ pub(super) const EGG: BodyKind = BodyKind::Rigid(Kind {
     ],
     make: |given| {
         let [length, width, blunt, tip] = [0, 1, 2, 3].map(|i| given.number(i));
-        Rigid::egg([length, width], [blunt, tip], given.number(4)).map(Form::Body)
+        Rigid::egg([length, width], [blunt, tip], given.number(4)).map(Form::from)
     },
 });
 

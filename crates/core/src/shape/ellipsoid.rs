@@ -30,7 +30,7 @@ pub(super) const ELLIPSOID: BodyKind = BodyKind::Rigid(Kind {
     name: "Ellipsoid",
     text: "ellipsoid with three semi-axes",
     parameters: &[SEMI_AXES, Parameter::density("density"), TENSOR, CENTRE],
-    make: |given| Rigid::ellipsoid(given.several(0), given.number(1)).map(Form::Body),
+    make: |given| Rigid::ellipsoid(given.several(0), given.number(1)).map(Form::from),
 });
 
 impl Rigid {

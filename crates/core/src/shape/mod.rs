@@ -60,7 +60,13 @@ pub enum Form {
     /// Points (z, r) of an outline that turns about the axis z, closed where it ends at its first one.
     Profile(Vec<[f64; 2]>),
     /// Any other, made; it is drawn by its balls, or by the points that lie farthest in every direction.
-    Body(Rigid),
+    Body(Box<Rigid>),
+}
+
+impl From<Rigid> for Form {
+    fn from(body: Rigid) -> Self {
+        Self::Body(Box::new(body))
+    }
 }
 
 /// Every body, but for those that are another one with asperities.
@@ -106,7 +112,7 @@ impl Kind<Form> {
             Form::Faces(points, triangles) => Rigid::polyhedron(&points, &triangles, density),
             Form::Mesh(points, triangles) => Rigid::mesh(&points, &triangles, density),
             Form::Profile(profile) => Rigid::revolution(&profile, density),
-            Form::Body(body) => Ok(body),
+            Form::Body(body) => Ok(*body),
         };
         let made = made.map_err(|error| match (error, self.parameters) {
             (Error::Parameter { name, .. }, [first, ..]) if place(name).is_none() => {

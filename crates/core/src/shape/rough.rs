@@ -84,7 +84,7 @@ pub(super) const ROUGH_SPHERE: BodyKind = BodyKind::Rigid(Kind {
             heights: Heights::of(given.get(3), given.number(2))?,
             seed: given.whole(5),
         };
-        Rigid::rough(&sphere, false, inertia, &roughness).map(Form::Body)
+        Rigid::rough(&sphere, false, inertia, &roughness).map(Form::from)
     },
 });
 

@@ -46,7 +46,7 @@ pub(super) const SUPERELLIPSOID: BodyKind = BodyKind::Rigid(Kind {
         CENTRE,
     ],
     make: |given| {
-        Rigid::superellipsoid(given.several(0), given.several(1), given.number(2)).map(Form::Body)
+        Rigid::superellipsoid(given.several(0), given.several(1), given.number(2)).map(Form::from)
     },
 });
 
