@@ -129,8 +129,12 @@ def missing(root: Path) -> list[str]:
 
 def absolute(text: str, repository: str, version: str) -> str:
     """Lead the links and pictures of a page to the repository, at the tag of a version."""
-    text = re.sub(r'(<img src="|!\[[^\]]*\]\()(?!https?:)', rf"\g<1>{repository}/raw/v{version}/", text)
-    return re.sub(r"(?<!!)(\[[^\]]*\]\()(?!https?:|#)", rf"\g<1>{repository}/blob/v{version}/", text)
+
+    def full(link: re.Match[str]) -> str:
+        way = "raw" if link[2].endswith((".png", ".gif", ".svg")) else "blob"
+        return f"{link[1]}{repository}/{way}/v{version}/{link[2]}"
+
+    return re.sub(r'(\]\(|<img src=")(?!https?:|#)([^)"]+)', full, text)
 
 
 def main(arguments: list[str], root: Path) -> None:

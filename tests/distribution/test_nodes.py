@@ -259,16 +259,17 @@ def test_a_distance_that_scatter_does_not_explain() -> None:
     [
         (0.0499, 0.001, 10_000, False),
         (0.0501, 0.001, 10_000, True),
-        (0.30, 0.0860, 10_000, False),
-        (0.30, 0.0855, 10_000, True),
+        (0.098, 0.0281, 10_000, False),
+        (0.098, 0.0279, 10_000, True),
+        (0.102, 0.0860, 10_000, True),
         (0.06, np.nan, 2500, False),  # 3.5 * 0.87 / 50 = 0.0609
         (0.062, np.nan, 2500, True),
         (np.nan, np.nan, 0, False),
-        (1.0, np.nan, 0, False),
+        (0.098, np.nan, 0, False),
     ],
 )
 def test_when_a_distance_warns(distance: float, scatter: float, impacts: int, warned: bool) -> None:
-    """Beyond 0.05 and 3.5 of the scatter; that of a single batch is as if impacts were independent."""
+    """Beyond 0.05 and 3.5 of the scatter, and beyond 0.1; that of a batch is as if impacts were independent."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         warn_of_distance(distances([distance], [scatter], [impacts]), stacklevel=1)

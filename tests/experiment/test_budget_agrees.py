@@ -63,7 +63,7 @@ def numbers(said: str, name: str) -> list[float]:
 
 
 def test_a_budget_of_a_ball_that_is_rounder_is_contradicted(tmp_path: Path) -> None:
-    """The measured out-of-roundness is thirty times the true one; the page says it before its sentence."""
+    """The measured out-of-roundness is thirty times the true one; the page says it below the answer."""
     out = tmp_path / "page.html"
     analysis = write(table(tmp_path, 5e-6, 1e-5, 1), out, setting(1.5e-4, 1e-5))
     first, [series] = analysis.warnings[0], analysis.series
@@ -78,7 +78,7 @@ def test_a_budget_of_a_ball_that_is_rounder_is_contradicted(tmp_path: Path) -> N
     assert by_times == pytest.approx(constant.errors["restitution"], rel=0.06)
     assert by_budget > 5.0 * by_times
     page = out.read_text(encoding="utf-8")
-    assert page.index("budget and the times disagree") < page.index("the mean coefficient of restitution")
+    assert page.index("the mean coefficient of restitution") < page.index("budget and the times disagree")
 
 
 def test_times_that_scatter_beyond_the_budget_contradict_it(tmp_path: Path) -> None:

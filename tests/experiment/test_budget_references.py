@@ -255,7 +255,7 @@ def test_closed_forms_are_averages_over_angles(body: Any, law: Any, kept: bool, 
     ("law", "body"),
     [
         (rs.TangentialRestitution(normal=0.9, tangential=0.5), BODY),
-        (rs.Coulomb(normal=0.9, friction=0.3), BODY),
+        (rs.Coulomb(normal=0.9, friction=0.05), BODY),
         (rs.Frictionless(normal=0.9), rs.Spherocylinder(radius=3e-3, separation=1e-5)),
         (rs.Frictionless(normal=0.9), rs.Dumbbell(radius=(3e-3, 2.9e-3), separation=1e-5)),
     ],
