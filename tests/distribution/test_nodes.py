@@ -269,7 +269,7 @@ def test_a_distance_that_scatter_does_not_explain() -> None:
     ],
 )
 def test_when_a_distance_warns(distance: float, scatter: float, impacts: int, warned: bool) -> None:
-    """Beyond 0.05 and 3.5 of the scatter, and beyond 0.1; that of a batch is as if impacts were independent."""
+    """Beyond 0.05 and 3.5 of the scatter, that of a batch as if impacts were independent; and beyond 0.1."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         warn_of_distance(distances([distance], [scatter], [impacts]), stacklevel=1)
