@@ -208,7 +208,7 @@ test("a set-up that cannot be is refused in the engine's words", () => {
   refused({ gravity: 0 }, /gravity = 0\.0: must be finite and > 0/);
   refused({ shape: "ring", inner: 4e-3 }, /inner = 0\.004: must be less than outer/);
   refused({ shape: "egg", width: 7e-3 }, /width = 0\.007: must be > 0 and <= length/);
-  for (const points of ["0_0_0_1_0_0_0_1_0_1_1_0", "0_0_0_1_0_0_2_0_0_3_0_0", "1_1_1_1_1_1_1_1_1_1_1_1"]) refused({ shape: "convex-polyhedron", points }, /must be not all in one plane/);
+  for (const points of ["0_0_0_1_0_0_0_1_0_1_1_0", "0_0_0_1_0_0_2_0_0_3_0_0", "1_1_1_1_1_1_1_1_1_1_1_1"]) refused({ shape: "convex-polyhedron", points }, /must be four or more, finite, not all in one plane/);
 });
 
 test("the closed form of the first impact agrees with the engine, angle by angle", () => {
@@ -270,7 +270,7 @@ test("a link is a set-up: what goes in comes out, and nonsense is named", () => 
   }
 });
 
-test("a link holds a body without an axis, a clump with its spheres; of a large one it says that the file is needed", () => {
+test("a link holds a rigid body, a clump with its spheres; of a large one it says that the file is needed", () => {
   for (const change of [...Object.values(RIGID), { shape: "clump", spheres: "0_0_0_0.001_0.001_0_0_0.002" }]) {
     const state = page.initial();
     state.a = { ...state.a, ...change, axis_y: 2.5e-3 };
@@ -281,7 +281,7 @@ test("a link holds a body without an axis, a clump with its spheres; of a large 
   Object.assign(state.a, { shape: "clump", spheres: Array.from({ length: 900 }, (_, k) => `${k / 7}_0_0_0.123456789`).join("_") });
   const { problems } = page.fromHash(`#${page.toHash(state)}`);
   assert.match(problems.join(), /spheres: of a file too large for a link/);
-  assert.match(page.fromHash("#exponent_1=1").problems.join(), /exponent_1 = 1: must be >= 1\.1/);
+  assert.match(page.fromHash("#exponent_1=1").problems.join(), /exponent_1 = 1: must be in \[1\.1, 100\]/);
   const bad = page.fromHash("#shape=clump&spheres=0_0_1&faces=5&mesh=0_0_0*0_1_2&asperities=1.5").problems;
   assert.equal(bad.length, 4, bad.join("\n"));
 });
@@ -396,7 +396,7 @@ test("σ(ε) of glass beads is drawn as in Fig. 6, both axes logarithmic, at twe
     assert.ok(seen.length > 20 && seen.every((value) => value > y.low && value < y.high));
   }
   // And the map shows how they scatter: more than a few rows of it are filled.
-  const { lattice, y: axis } = page.pictures.scatter(state, a, "a");
+  const { lattice, y: axis } = page.pictures.scatter(state, a, "a", [600, 400]);
   assert.ok(axis.high - axis.low < 0.05);
   const rows = new Set([...lattice.counts].flatMap((count, k) => (count ? [k % lattice.other.count] : [])));
   assert.ok(rows.size > 50, `${rows.size} rows`);
@@ -423,12 +423,12 @@ test("a map is the same however its impacts arrive", () => {
   const { state, statistics: whole } = counted(2, "a", { particles: 40 });
   const { run } = whole;
   const parts = new page.Statistics({ ...run, counts: new Float64Array(40) });
-  page.pictures.scatter(state, parts, "a");
+  page.pictures.scatter(state, parts, "a", [600, 400]);
   for (const first of [30, 10, 0, 20]) {
     parts.run.counts.set(run.counts.subarray(first, first + 10), first);
     parts.add({ first, count: 10 });
   }
-  const [one, other] = [whole, parts].map((s) => page.pictures.scatter(state, s, "a").lattice);
+  const [one, other] = [whole, parts].map((s) => page.pictures.scatter(state, s, "a", [600, 400]).lattice);
   assert.deepEqual(one.counts, other.counts);
   assert.equal(one.most, Math.max(...one.counts));
   assert.equal(one.most, other.most);
