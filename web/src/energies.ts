@@ -43,7 +43,7 @@ export class Energies {
     const shares = [height, ...now, height + sum(now)].map((value) => value / unit);
     // No bar is cut: where energy grows, all are drawn smaller.
     const full = Math.max(1, ...shares);
-    part("ledger-unit").textContent = `; ${impacts ? "motion before" : "all"} = 100`;
+    part("ledger-unit").textContent = `; ${impacts ? "before" : "all"} = 100`;
     part("ledger-change").textContent = impacts ? "change" : "";
     this.bars.forEach(({ row, ...text }, k) => {
       row.style.setProperty("--share", String(Math.max(shares[k], 0) / full));
