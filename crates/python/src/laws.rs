@@ -162,16 +162,8 @@ impl ImpulseFunction for Function {
                 })?
             }
             Asked::Known(coefficient, rule) => {
-                let [[xx, xy, xz], [_, yy, yz], [.., zz]] = compliance;
-                let entries = Symmetric {
-                    xx,
-                    yy,
-                    zz,
-                    xy,
-                    xz,
-                    yz,
-                };
-                let k = Compliance::new(entries).expect("the compliance of a body");
+                let k = Compliance::new(Symmetric::from_rows(compliance))
+                    .expect("the compliance of a body");
                 let law = restitution_core::Law::of(coefficient, *rule);
                 law.answer(&k, velocity)?.impulse
             }

@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from restitution.analytic._disc import Number, turned
-from restitution.analytic._hull import Hull, Outline, Turned
+from restitution.analytic._hull import Hull, Outline
 from restitution.analytic._impulse import Impulse, Mode
 from restitution.analytic._normal import Fall, coefficient, kinks
 from restitution.analytic._orientation import Floats
 from restitution.analytic._panels import distinct, extremes, panels, roots, solve
-from restitution.bodies import Body, RoughSphere
+from restitution.bodies import Body, RoughSphere, Turned
 from restitution.laws import Law
 
 _STEP = 1e-150

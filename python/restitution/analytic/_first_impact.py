@@ -9,13 +9,13 @@ import numpy as np
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.analytic._branched import BranchedFirstImpact
 from restitution.analytic._frozen import FirstImpact, check
-from restitution.analytic._hull import Outline, Turned
+from restitution.analytic._hull import Outline
 from restitution.analytic._normal import Fall
 from restitution.analytic._orientation import ORIENTATIONS, OrientationName
 from restitution.analytic._rigid_first import RigidFirstImpact
 from restitution.analytic._rough_first import RoughFirstImpact
 from restitution.analytic._two_balls import TwoBallsFirstImpact
-from restitution.bodies import Body, Dumbbell, RigidBody, RoughSphere, Spherocylinder
+from restitution.bodies import Body, Dumbbell, RigidBody, RoughSphere, Spherocylinder, Turned
 from restitution.laws import Frictionless, Law, TangentialRestitution
 
 SHORTEST, LONGEST = 1e-100, 1e100  # L/R whose powers, up to the third, are normal numbers

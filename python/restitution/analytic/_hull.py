@@ -15,8 +15,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from restitution.analytic._disc import Number
-from restitution.bodies import Body, Egg, RoughSphere
-from restitution.bodies import Turned as Turned
+from restitution.bodies import Body, Egg, RoughSphere, Turned
 
 
 @dataclass(frozen=True)

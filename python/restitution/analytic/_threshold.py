@@ -7,10 +7,10 @@ import numpy as np
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.analytic._disc import Number, turned
 from restitution.analytic._frozen import check
-from restitution.analytic._hull import Outline, Side, Turned
+from restitution.analytic._hull import Outline, Side
 from restitution.analytic._impulse import Impulse, Mode
 from restitution.analytic._panels import extremes
-from restitution.bodies import Body, RoughSphere
+from restitution.bodies import Body, RoughSphere, Turned
 from restitution.laws import Law
 
 
