@@ -72,6 +72,7 @@ def below_one(runs: One, settings: Few) -> Finding:
 FIGURE: PaperFigure[One, Few] = PaperFigure(
     "figure-1",
     NASTY,
+    NASTY,
     "Points.",
     lambda runs, s: runs.main.assign_attrs(recorded(runs.main)),
     draw,
@@ -91,7 +92,9 @@ PAPER = Paper(
     figures=[FIGURE],
     claims=CLAIMS,
     misprints=[Misprint("1", "caveat", "a", "b", "By algebra.", "one", lambda: Check(3.0, 1.0, 1.0))],
-    sections=lambda runs, settings: [Section("own", "Of its own", ["<p>Only here.</p>"])],
+    sections=lambda runs, settings: [
+        Section("own", "Of its own", ["<p>Only here, as Eq. 1 of “Of its own”.</p>"])
+    ],
 )
 
 
@@ -154,8 +157,10 @@ def test_a_paper_gives_only_what_is_its_own(folder: Path, text: str) -> None:
         assert "Stated in the paper: ε_n = 0.9. Our choice: h = 0.1 m. Run: 20 particles, each" in caption
         assert f"seed {data.attrs['seeds']}; restitution {rs.__version__}." in caption
         assert text.count(str(data.attrs["seeds"])) == 2  # of the run, and in the caption
+    assert "recorded, for" not in caption  # all impacts are
     for words in (
-        *("One figure. Each of the 1 quantitative claims", "1 holds 0 hold in part 0 fail", "Only here."),
+        "Parameters and run Stated in the paper: ε",
+        *("One figure. Each of the 1 quantitative claims", "1 holds 0 hold in part 0 fail", "Only here, as"),
         *(
             "± 0.0012",
             "1 234 567",
@@ -175,6 +180,7 @@ def test_the_report_needs_no_other_file(source: str, folder: Path) -> None:
     """No script, no style sheet, the picture embedded; links elsewhere are the DOI and the page beside it."""
     page = Page(source)
     assert not {"script", "link", "iframe", "object", "form"} & {tag for tag, _ in page.tags}
+    assert '<a href="#own">Eq. 1 of “Of its own”</a>' in source
     elsewhere = {target for target in page.of("href") if not target.startswith("#")}
     assert elsewhere == {f"https://doi.org/{DOI}", "explorer.html#stop=2"}
     embedded = [b64decode(picture.removeprefix("data:image/png;base64,")) for picture in page.of("src")]
@@ -190,9 +196,12 @@ def test_it_is_well_formed(source: str) -> None:
     anchors = page.of("id")
     assert len(set(anchors)) == len(anchors)
     assert {target[1:] for target in page.of("href") if target.startswith("#")} <= set(anchors)
-    assert page.of("alt") == [NASTY]
+    assert page.of("alt") == [f"{NASTY}. Points."]
     tags = [tag for tag, _ in page.tags]
-    assert tags.count("caption") == tags.count("table") == tags.count("details") + 1  # the claims stay open
+    assert tags.count("caption") == tags.count("table")
+    assert (
+        tags.count("details") == tags.count("table") - 1 + 1
+    )  # but the claims; the parameters of the figure
     assert tags.count("section") == source.count('<a href="#top">Back to the top</a>')
     assert [attrs for tag, attrs in page.tags if tag == "html"] == [{"lang": "en"}]
     assert "width=device-width" in source

@@ -39,6 +39,9 @@ class Section(NamedTuple):
 def page(title: str, header: str, sections: Sequence[Section], footer: str, *, contents: bool = False) -> str:
     """Make the whole page, with a table of contents where it is asked for; `header` is HTML already."""
     body = "\n".join(map(_section, sections))
+    for one in sections:  # what a text names in quotation marks is a link to it
+        named = rf"(?:Eqs?\.[^“”<>]{{,20}} of )?“{re.escape(text(one.title))}”"
+        body = re.sub(named, rf'<a href="#{one.anchor}">\g<0></a>', body)
     entries = "\n".join(f'<li><a href="#{one.anchor}">{text(one.title)}</a></li>' for one in sections)
     listed = f'<nav aria-label="Contents">\n<ol>\n{entries}\n</ol>\n</nav>\n' if contents else ""
     return f"""<!DOCTYPE html>

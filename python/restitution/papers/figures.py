@@ -22,15 +22,16 @@ class Caption(NamedTuple):
     each: str = ""  # what every one of several runs is for, such as "for each curve"
     recorded: str = "the standard errors"  # what impacts are recorded for where others are counted
 
-    def written(self, about: dict[str, Any]) -> str:
-        """Write all of it, and the run that these attributes tell of (see `recorded` and `counted`)."""
+    def parameters(self, about: dict[str, Any]) -> str:
+        """Write whose each parameter is, and the run, from attributes as of `recorded` or `counted`."""
         each = f" {self.each}" if self.each else ""
         impacts = about["impacts_counted" if "impacts_counted" in about else "impacts_recorded"]
+        most = about["impacts"]
         run = (
             f"{grouped(about['particles'])} particles{each}, each followed for at most "
-            f"{grouped(about['impacts'])} impacts (ours), {grouped(impacts)} in all"
+            f"{grouped(most)} impact{'s' if most > 1 else ''} (ours), {grouped(impacts)} in all"
         )
-        if "impacts_counted" in about and "impacts_recorded" in about:
+        if about.get("impacts_recorded", impacts) < impacts:
             run += (
                 f"; recorded, for {self.recorded}, the first {grouped(about['particles_recorded'])} "
                 f"particles{each}, {grouped(about['impacts_recorded'])} impacts in all"
@@ -38,7 +39,7 @@ class Caption(NamedTuple):
         seeds = ", ".join(map(str, about["seeds"]))
         order = "seed " + seeds if len(about["seeds"]) == 1 else f"seeds {seeds} in the order of the legend"
         return (
-            f"{self.text} Stated in the paper: {'; '.join(self.paper)}. Our choice: {'; '.join(self.ours)}. "
+            f"Stated in the paper: {'; '.join(self.paper)}. Our choice: {'; '.join(self.ours)}. "
             f"Run: {run}; {order}; restitution {about['version']}."
         )
 
@@ -79,6 +80,7 @@ class PaperFigure(Generic[R, S]):
 
     name: str
     title: str
+    pictured: str  # what is drawn, for those who cannot see it
     shows: str  # what there is to see
     reduce: Callable[[R, S], xr.Dataset]  # with the attributes of `recorded` or `counted`
     draw: Callable[[xr.Dataset], Figure]
@@ -88,18 +90,23 @@ class PaperFigure(Generic[R, S]):
     def save(self, runs: R, settings: S, folder: Path) -> "SavedFigure":
         """Write the figure (``name.png``, ``name.pdf``), its caption (``.txt``) and its data (``.nc``)."""
         drawn = self.reduce(runs, settings)
-        caption = self.caption(drawn, settings).written(drawn.attrs)
-        png = save_with_data(self.draw(drawn), drawn, folder / self.name, self.title, caption)
-        return SavedFigure(self.name, self.title, self.shows, png, caption, self.stop)
+        caption = self.caption(drawn, settings)
+        path = (folder / self.name).with_suffix(".png")
+        saved = SavedFigure(self, path, caption.text, caption.parameters(drawn.attrs))
+        save_with_data(self.draw(drawn), drawn, folder / self.name, self.title, saved.caption)
+        return saved
 
 
 @dataclass(frozen=True)
 class SavedFigure:
-    """A figure on disk, with what the report says of it."""
+    """A figure on disk, and the two parts of its caption."""
 
-    name: str
-    title: str
-    shows: str
+    of: PaperFigure[Any, Any]
     png: Path
-    caption: str
-    stop: int | None = None
+    text: str
+    parameters: str
+
+    @property
+    def caption(self) -> str:
+        """The whole of it, as in the files."""
+        return f"{self.text} {self.parameters}"

@@ -114,17 +114,18 @@ def _summary(claims: Sequence[Claim]) -> str:
     )
 
 
-def _figure(figure: SavedFigure, explorer: str) -> str:
+def _figure(saved: SavedFigure, explorer: str) -> str:
     """Show a figure with its caption, and where it can be made and looked into impact by impact."""
-    live = ""
+    figure, live = saved.of, ""
     if explorer and figure.stop is not None:
         words = f"Watch it fill up, and replay any impact, at stop {figure.stop} of the explorer's tour."
         live = f'\n<a class="live" href="{html.text(explorer)}#stop={figure.stop}">{html.text(words)}</a>'
     return (
         f'<figure id="{html.text(figure.name)}">\n<h3>{html.prose(figure.title)}</h3>\n'
-        f"{html.image(figure.png, figure.title)}\n<figcaption>\n"
+        f"{html.image(saved.png, f'{figure.pictured}. {figure.shows}')}\n<figcaption>\n"
         f"{html.paragraph('What to see: ' + figure.shows, 'see')}\n"
-        f"{html.paragraph(figure.caption)}{live}</figcaption>\n</figure>"
+        f"{html.paragraph(saved.text)}\n<details><summary>Parameters and run</summary>\n"
+        f"{html.paragraph(saved.parameters)}</details>{live}</figcaption>\n</figure>"
     )
 
 

@@ -1,14 +1,13 @@
-"""The figure: a column for each L/R, a row for each quantity, a line for each law."""
+"""The figure: a column for each L/R and a row for each quantity; below, the energy that two laws create."""
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import MaxNLocator
 
 from restitution import figures as fg
 
@@ -16,7 +15,7 @@ _LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "-", "-", "--", ":", "-")
 _COLORS = ("#D55E00", "#000000", "#0072B2", "#56B4E9", "#009E73", "#CC79A7")
 _VELOCITY_TICKS = (0.03, 0.1, 0.3, 1.0)
 _RANGE = (0.018, 1.1)
-_LETTERS = "abcdefghijklmnopqrst"
+_LETTERS = "abcdefghijklmn"
 _VELOCITY = r"impact velocity $v_G^n$ (m/s)"
 
 
@@ -24,33 +23,51 @@ _VELOCITY = r"impact velocity $v_G^n$ (m/s)"
 def draw(data: xr.Dataset) -> Figure:
     """Draw what `measure` found."""
     columns = data.sizes["elongation"]
-    figure, panels = fg.panels(fg.PAGE, 8.8, 5, columns)
+    figure, panels = fg.panels(fg.PAGE, 7.6, 4, columns)
     for k in range(columns):
         body = data.isel(elongation=k)
         panels[0][k].set_title(rf"$L/R = {float(body['elongation']):g}$", fontsize=9.0)
         _density(panels[0][k], body)
-        _by_velocity(panels[1][k], body, "deviation", logarithmic=True)
+        _by_velocity(panels[1][k], body, "deviation")
         _by_velocity(panels[2][k], body, "mean_fraction")
-        _by_velocity(panels[3][k], body, "created_share", only_created=True)
-        _gain(panels[4][k], body)
-        for row in panels[1:]:
-            row[k].set_xlim(*_RANGE)
-            fg.plain_log(row[k], _VELOCITY_TICKS)
-            row[k].sharex(panels[1][k])
-        for row in panels[1:-1]:
-            row[k].tick_params(labelbottom=False)
-        panels[4][k].set_xlabel(_VELOCITY)
+        panels[1][k].set_yscale("log")
+        panels[2][k].set_ylim(bottom=0.0)
+        panels[2][k].yaxis.set_major_locator(MaxNLocator(5))
+        panels[2][k].sharex(panels[1][k])
+        panels[1][k].tick_params(labelbottom=False)
+    for axes in panels[3]:
+        axes.remove()
+    places = panels[3][0].get_gridspec()
+    assert places is not None
+    half = columns // 2
+    panels[3] = [figure.add_subplot(places[3, :half]), figure.add_subplot(places[3, half:])]
+    _created(panels[3][0], data["created_share"], 0.01)
+    panels[3][0].set_ylim(0.0, 0.7)
+    bodies = [
+        Line2D([], [], color="0.4", linestyle="none", marker=marker, label=f"$L/R = {x:g}$")
+        for marker, x in zip(fg.MARKERS, data["elongation"].to_numpy(), strict=False)
+    ]
+    panels[3][0].legend(handles=bodies[1:], loc="upper left", ncols=3, handlelength=0.8)
+    _bounds(panels[3][1], data)
+    _created(panels[3][1], data["largest_energy_ratio"] - 1.0, 1e-5)
+    for row in panels[1:]:
+        for axes in row:
+            axes.set_xlim(*_RANGE)
+            fg.plain_log(axes, _VELOCITY_TICKS)
+    for axes in (*panels[2], *panels[3]):
+        axes.set_xlabel(_VELOCITY)
     labels = (
         rf"$p(\varepsilon\,|\,{float(data.attrs['speed']):g}$ m/s$)$",
         r"standard deviation $\sigma(\varepsilon)$",
         r"mean $E_\mathrm{rot}/E_\mathrm{tot}$",
         "share creating energy",
-        "largest relative gain",
     )
-    for number, (row, label) in enumerate(zip(panels, labels, strict=True)):
+    letters = iter(_LETTERS)
+    for row, label in zip(panels, labels, strict=True):
         row[0].set_ylabel(label)
-        for k, axes in enumerate(row):
-            fg.letter(axes, f"({_LETTERS[number * columns + k]})", left=number == 0)
+        for axes in row:
+            fg.letter(axes, f"({next(letters)})", left=row is panels[0])
+    panels[3][1].set_ylabel("largest relative gain")
     _legend(figure, data)
     figure.align_ylabels([row[0] for row in panels])
     return figure
@@ -87,46 +104,41 @@ def _density(axes: Axes, body: xr.Dataset) -> None:
     axes.set_xlabel(r"coefficient of restitution $\varepsilon$")
 
 
-def _by_velocity(
-    axes: Axes, body: xr.Dataset, name: str, *, only_created: bool = False, logarithmic: bool = False
-) -> None:
-    top = 0.0
+def _by_velocity(axes: Axes, body: xr.Dataset, name: str) -> None:
     for law in range(body.sizes["law"]):
         values, error = (body[each].isel(law=law).to_numpy() for each in (name, f"{name}_error"))
-        if only_created and not np.nanmax(values) > 0:
-            continue
-        top = max(top, float(np.nanmax(values[_drawn(body)])))
         fg.line(axes, body["velocity"].to_numpy(), values, error, color=_COLORS[law], linestyle=_LINES[law])
-    if logarithmic:
-        axes.set_yscale("log")
-        return
-    axes.set_ylim(0, 1.25 * top if top else 1)
-    axes.yaxis.set_major_locator(MaxNLocator(5))
-    if not top:
-        _say_none(axes)
 
 
-def _gain(axes: Axes, body: xr.Dataset) -> None:
-    """Draw what the largest factor is above 1; laws without any gain are not there."""
-    bound = float(body["bound"]) - 1
-    lowest = 1e-4 * bound
-    axes.axhline(bound, color="0.55", linewidth=0.8, linestyle="-.")
-    for law in range(body.sizes["law"]):
-        gain = body["largest_energy_ratio"].isel(law=law) - 1
-        axes.plot(body["velocity"], gain, color=_COLORS[law], linestyle=_LINES[law])
+def _created(axes: Axes, values: xr.DataArray, least: float) -> None:
+    """Draw a line for each law that creates energy, and each body in which it does, by its marker."""
+    velocity = values["velocity"].to_numpy()
+    inside = (velocity >= _RANGE[0]) & (velocity <= _RANGE[1])
+    for law in range(values.sizes["law"]):
+        for k, marker in enumerate(fg.MARKERS[: values.sizes["elongation"]]):
+            one = values.isel(law=law, elongation=k).to_numpy()
+            if np.nanmax(one[inside]) > least:
+                shown = np.where(one > 0.0, one, np.nan)
+                look: dict[str, Any] = {
+                    "marker": marker,
+                    "markevery": [0, 2, 4, 7, 12, 20, 32],
+                    "linewidth": 0.8,
+                }
+                axes.plot(velocity, shown, color=_COLORS[law], linestyle=_LINES[law], **look)
+
+
+def _bounds(axes: Axes, data: xr.Dataset) -> None:
+    """Draw what no gain of the paper's law exceeds, with the L/R beside it."""
     axes.set_yscale("log")
-    axes.set_ylim(lowest, 30 * bound)
-    axes.yaxis.set_major_locator(LogLocator(numticks=6))
-    axes.yaxis.set_minor_formatter(NullFormatter())
-    if not np.any((body["largest_energy_ratio"].to_numpy() - 1 > lowest)[:, _drawn(body)]):
-        _say_none(axes)
-
-
-def _say_none(axes: Axes) -> None:
-    axes.text(0.5, 0.4, "none", transform=axes.transAxes, ha="center", color="0.4")
-
-
-def _drawn(body: xr.Dataset) -> npt.NDArray[np.bool_]:
-    velocity = body["velocity"].to_numpy()
-    chosen: npt.NDArray[np.bool_] = (velocity >= _RANGE[0]) & (velocity <= _RANGE[1])
-    return chosen
+    axes.set_ylim(1e-5, 20.0)
+    for elongation, most in zip(data["elongation"].to_numpy(), data["bound"].to_numpy() - 1.0, strict=True):
+        axes.axhline(most, color="0.55", linewidth=0.8, linestyle="-.")
+        place = (1.01, most)
+        axes.annotate(
+            f"{elongation:g}",
+            place,
+            xycoords=axes.get_yaxis_transform(),
+            va="center",
+            color="0.4",
+            fontsize="small",
+        )

@@ -18,10 +18,11 @@ __all__ = ["PAPER", "redraw"]
 
 
 def _about(runs: Runs) -> str:
+    counted, recorded = impacts_of(runs.lattice), impacts_of(runs.main)
+    of = "them" if recorded == counted else f"the first {grouped(recorded)} of them"
     return (
-        f"Figures 2 to 7 and 9 are simulated anew, with {grouped(impacts_of(runs.lattice))} impacts behind "
-        f"Fig. 2. Unless stated otherwise, the numbers are of the first {grouped(impacts_of(runs.main))} of "
-        "these impacts."
+        f"Figures 2 to 7 and 9 are simulated anew, with {grouped(counted)} impacts behind Fig. 2. Unless "
+        f"stated otherwise, the numbers are of {of}."
     )
 
 

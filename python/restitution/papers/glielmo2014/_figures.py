@@ -339,9 +339,9 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "figure-2",
         "Fig. 2: restitution against impact velocity",
-        "Map of ε against impact velocity. At the velocity of the first impacts all ε lie close below "
-        "0.98; towards lower velocities they fan out on both sides of it, to between 0.6 and 1.4 and "
-        "beyond.",
+        "Map of ε against impact velocity",
+        "At the velocity of the first impacts all ε lie close below 0.98; towards lower velocities they fan "
+        "out on both sides of it, to between 0.6 and 1.4 and beyond.",
         data.lattice,
         fg.map,
         _explain_map,
@@ -350,9 +350,9 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "figure-3",
         "Fig. 3: rotational energy against impact velocity",
-        "Map of the rotational share of the energy against impact velocity. It is close to 0 at the "
-        "velocity of the first impacts; towards lower velocities it spreads over a growing range, up "
-        "to about 0.3.",
+        "Map of the rotational share of the energy against impact velocity",
+        "It is close to 0 at the velocity of the first impacts; towards lower velocities it spreads over a "
+        "growing range, up to about 0.3.",
         data.lattice,
         partial(fg.map, of="fraction"),
         _explain_fraction_map,
@@ -361,10 +361,10 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "figure-4",
         "Fig. 4: histograms of restitution",
-        "Four histograms of ε on a logarithmic axis, with asymmetric Laplace densities. At 0.8, 0.4 "
-        "and 0.2 m/s each is a peak at 0.98 with nearly straight flanks, narrower at higher velocity, "
-        "which fall below the lines at their ends; at 0.1 m/s the histogram is broad, with shoulders, "
-        "and leaves the straight lines.",
+        "Four histograms of ε on a logarithmic axis, with asymmetric Laplace densities",
+        "At 0.8, 0.4 and 0.2 m/s each is a peak at 0.98 with nearly straight flanks, narrower at higher "
+        "velocity, which fall below the lines at their ends; at 0.1 m/s the histogram is broad, with "
+        "shoulders, and leaves the straight lines.",
         data.restitution_histograms,
         _restitution_histograms,
         _explain_restitution_histograms,
@@ -373,9 +373,9 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "figure-5",
         "Fig. 5: histograms of the rotational energy",
-        "Densities of the rotational share of the energy at four velocities, on a logarithmic axis. "
-        "At 0.8 m/s the density falls steeply from 0 to 0.08; at lower velocities it reaches farther "
-        "and is flatter; at 0.2 and 0.1 m/s it rises again towards its upper end near 0.28.",
+        "Densities of the rotational share of the energy at four velocities, on a logarithmic axis",
+        "At 0.8 m/s the density falls steeply from 0 to 0.08; at lower velocities it reaches farther and is "
+        "flatter; at 0.2 and 0.1 m/s it rises again towards its upper end near 0.28.",
         data.fraction_histograms,
         _fraction_histograms,
         _explain_fraction_histograms,
@@ -384,9 +384,9 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "figure-6",
         "Fig. 6: standard deviation of restitution",
-        "Standard deviation of ε against impact velocity for L/R = 0.01 and 0.02, both axes "
-        "logarithmic: it falls as the velocity grows, faster near the velocity of the first impacts, "
-        "and is larger for 0.02.",
+        "Standard deviation of ε against impact velocity for L/R = 0.01 and 0.02, both axes logarithmic",
+        "It falls as the velocity grows, faster near the velocity of the first impacts, and is larger for "
+        "0.02.",
         data.bead_deviation,
         _bead_deviation,
         _explain_bead_deviation,
@@ -395,9 +395,9 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "figure-7",
         "Fig. 7: negative restitution",
-        "Map of ε from −3 to 4 at velocities below 0.1 m/s. The slower the impact, the wider the "
-        "range of ε. It reaches below 0 at velocities below 0.02 m/s; at negative velocities all ε "
-        "are below −1.",
+        "Map of ε from −3 to 4 at velocities below 0.1 m/s",
+        "The slower the impact, the wider the range of ε. It reaches below 0 at velocities below 0.02 m/s; "
+        "at negative velocities all ε are below −1.",
         data.slow,
         _slow,
         _explain_slow,
@@ -406,10 +406,10 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "figure-9",
         "Fig. 9: first impact from rest",
-        "Density of ε at the first impact, a curve that falls from −0.01 to 0.15 and rises steeply "
-        "towards 0.4: simulated points lie on the corrected Eq. 21 and well above Eq. 21 as printed. "
-        "Below, the differences between simulation and corrected equation scatter about 0 by a few "
-        "standard errors.",
+        "Density of ε at the first impact, and below it the differences between simulation and closed form",
+        "The density falls from −0.01 to 0.15 and rises steeply towards 0.4. Simulated points lie on the "
+        "corrected Eq. 21 and well above Eq. 21 as printed. Below, the differences between simulation and "
+        "corrected equation scatter about 0 by a few standard errors.",
         data.first_impact,
         _first_impact,
         _explain_first_impact,
@@ -418,9 +418,9 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "figure-2-sensitivity",
         "Fig. 2 for other radii and release heights",
-        "Median and outer quantiles of ε against impact velocity, in two panels: for three radii and "
-        "for three release heights. The medians nearly agree; the quantiles of the radii differ at "
-        "low velocity, and those of the heights differ at all velocities, wider for higher releases.",
+        "Median and outer quantiles of ε against impact velocity, for three radii and three release heights",
+        "The medians nearly agree; the quantiles of the radii differ at low velocity, and those of the "
+        "heights differ at all velocities, wider for higher releases.",
         data.map_sensitivity,
         _map_sensitivity,
         _explain_map_sensitivity,
@@ -429,8 +429,8 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "figure-6-sensitivity",
         "Fig. 6 for other radii and release heights",
-        "Standard deviation of ε against impact velocity, both axes logarithmic, in two panels. The "
-        "curves for three radii lie close together; those for three release heights lie well apart, "
+        "Standard deviation of ε against impact velocity, for three radii and three release heights",
+        "The curves for three radii lie close together; those for three release heights lie well apart, "
         "higher for higher releases.",
         data.deviation_sensitivity,
         _deviation_sensitivity,

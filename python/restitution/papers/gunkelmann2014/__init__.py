@@ -3,7 +3,8 @@
 import os
 from pathlib import Path
 
-from restitution.figures.report import grouped
+from restitution.figures import report as html
+from restitution.figures.report import Section, grouped
 from restitution.papers import redraw as machinery
 from restitution.papers.gunkelmann2014._claims import CLAIMS
 from restitution.papers.gunkelmann2014._figures import FIGURES
@@ -25,6 +26,40 @@ def _about(runs: Runs) -> str:
     )
 
 
+def _closed_form() -> Section:
+    """Give what the figures and claims compare with, with the numbers of docs/rough.md, which derives it."""
+    formulas = (
+        ("(9)", "⟨y⟩ = M(σ̃² − κ)"),
+        ("(10)", "σ_0² = Mσ̃²"),
+        (
+            "(11)",
+            "p(y) = exp(−y/a)/(a + b) where y > 0, exp(y/b)/(a + b) where y < 0; a − b = ⟨y⟩, ab = σ_0²/2",
+        ),
+        ("(12)", "σ_ω = (1/R) {κ(1 + ε_n)γ/2 · (v_0²r^k − v²)/(r − s)}^½, k = ln(v_0²/v²)/ln(1/s)"),
+    )
+    listed = "".join(
+        f'<dt>{label}</dt><dd class="formula">{html.prose(formula)}</dd>' for label, formula in formulas
+    )
+    return Section(
+        "closed-form",
+        "The closed form",
+        [
+            html.paragraph(
+                "No parameter of it is fitted. Let y = (ε − ε_n)/(1 + ε_n); M the mean square of the angle "
+                "between the lowest point and the contact, 4/N for equal heights and 2⟨h⟩/R for exponential "
+                "ones; κ = mR²/(J + mR²); and σ̃ = σ_ωR/v, where σ_ω is the standard deviation of a "
+                "horizontal component of the spin. Then"
+            ),
+            f'<dl class="pair">{listed}</dl>',
+            html.paragraph(
+                "where γ = κ(1 + ε_n)M, r = 1 − 2γ and s = ε_n² − 2ε_nγ; the sphere is released without spin "
+                "and first meets the plane at v_0. The page docs/rough.md of the package derives all of it, "
+                "under the same numbers."
+            ),
+        ],
+    )
+
+
 PAPER = Paper(
     title="Coefficient of restitution of rough spheres: figures, claims checked",
     reference="M. Montaine, M. Heckel, C. Kruelle, T. Schwager, T. Pöschel, Phys. Rev. E 84, 041306 (2011), "
@@ -43,6 +78,7 @@ PAPER = Paper(
     },
     figures=FIGURES,
     claims=CLAIMS,
+    sections=lambda runs, settings: [_closed_form()],
 )
 
 

@@ -299,8 +299,8 @@ def number_of_asperities(runs: Runs, s: Settings) -> Finding:
         measured=tuple(measured),
         verdict=verdict(False, all(agree)),
         rule="N: equal heights; ⟨h⟩: random ones. The number says what the scatter is only if heights are "
-        "equal. In part if both exponents are those of the closed form (docs/rough.md, 10 and 12: −1 and 1 "
-        f"where the spin is not braked) within 0.05 and {SIGNIFICANT:g} standard errors; fails otherwise.",
+        "equal. In part if both exponents are those of Eqs. 10 and 12 of “The closed form” (−1 and 1 where "
+        f"the spin is not braked) within 0.05 and {SIGNIFICANT:g} standard errors; fails otherwise.",
         why="With equal heights σ goes as N to the power {:.3f}, in closed form {:.3f}; with random ones as "
         "⟨h⟩ to the power {:.3f}, in closed form {:.3f}, and the number has dropped out: 10⁶ asperities "
         "alone do not say how a ball scatters.".format(*slopes),

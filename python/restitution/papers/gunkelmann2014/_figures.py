@@ -108,7 +108,7 @@ def _explain_densities(drawn: xr.Dataset, s: Settings) -> Caption:
         "Probability density of the coefficient of restitution ε of a rough sphere at four impact "
         "velocities. Points: simulation, ± one standard error, each particle counting as one draw. Lines: "
         "asymmetric Laplace density with decay lengths a above and b below its cusp, by maximum likelihood: "
-        f"{fits}. Dashed: Eqs. 11 and 12 of docs/rough.md.",
+        f"{fits}. Dashed: Eqs. 11 and 12 of “The closed form”.",
         _model(s),
         [f"windows of ± {s.speed_tolerance:.0%} about {listing(s.speeds)} m/s", *_ours(s)],
         recorded="all",
@@ -120,8 +120,8 @@ def _explain_curves(what: str) -> Any:
         return Caption(
             f"{what} against impact velocity (a) for spheres with N asperities of equal height, (b) for "
             f"{grouped(s.asperities)} asperities whose heights are exponential with the mean ⟨h⟩. Points: "
-            "simulation, ± one standard error, each particle counting as one draw. Lines: closed form "
-            "(docs/rough.md).",
+            "simulation, ± one standard error, each particle counting as one draw. Lines: Eqs. 10 and 12 of "
+            "“The closed form”.",
             _model(s),
             [
                 f"N = {', '.join(map(grouped, s.numbers))} with h = {1e6 * s.height:g} µm",
@@ -138,8 +138,9 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "restitution",
         "Restitution of a rough sphere against impact velocity",
-        "Map of ε against impact velocity: a narrow band about 0.98 at the velocity of the first impacts, "
-        "which widens on both sides as the velocity falls.",
+        "Map of ε against impact velocity",
+        "A narrow band about 0.98 at the velocity of the first impacts, which widens on both sides as the "
+        "velocity falls.",
         data.lattice,
         fg.map,
         _explain_map,
@@ -147,8 +148,9 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "densities",
         "Densities of restitution at four velocities",
-        "Four densities of ε on a logarithmic axis, each a peak with two straight flanks. They lie on the "
-        "fitted line and on the closed form, in which nothing is fitted.",
+        "Four densities of ε on a logarithmic axis",
+        "Each is a peak with two straight flanks. They lie on the fitted line and on the closed form, in "
+        "which nothing is fitted.",
         data.densities,
         _densities,
         _explain_densities,
@@ -156,8 +158,9 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "deviation",
         "Scatter of restitution, by number and height of the asperities",
-        "Standard deviation of ε against impact velocity, both axes logarithmic: it grows as the velocity "
-        "falls, with fewer asperities, and with higher ones, along the lines of the closed form.",
+        "Standard deviation of ε against impact velocity, both axes logarithmic",
+        "It grows as the velocity falls, with fewer asperities, and with higher ones, along the lines of "
+        "the closed form.",
         data.deviations,
         _deviations,
         _explain_curves("Standard deviation σ of the coefficient of restitution ε"),
@@ -165,8 +168,8 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
     PaperFigure(
         "rotation",
         "Rotational share of the energy, by number and height of the asperities",
-        "Mean rotational share of the energy against impact velocity, both axes logarithmic: it grows as "
-        "the velocity falls.",
+        "Mean rotational share of the energy against impact velocity, both axes logarithmic",
+        "It grows as the velocity falls.",
         data.rotation,
         _rotation,
         _explain_curves("Mean share of the rotational in the kinetic energy before the impact"),
