@@ -117,7 +117,7 @@ def _created(axes: Axes, values: xr.DataArray, least: float) -> None:
     for law in range(values.sizes["law"]):
         for k, marker in enumerate(fg.MARKERS[: values.sizes["elongation"]]):
             one = values.isel(law=law, elongation=k).to_numpy()
-            if np.nanmax(one[inside]) > least:
+            if (one[inside] > least).any():
                 shown = np.where(one > 0.0, one, np.nan)
                 look: dict[str, Any] = {
                     "marker": marker,
