@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from restitution import _core
 
 if TYPE_CHECKING:
-    from restitution import analytic, figures, fit, study
+    from restitution import analytic, figures, fit, gas, study
     from restitution._core import NumericalError, build_info
     from restitution.bodies import *  # noqa: F403
     from restitution.distribution import DistanceWarning, FluctuatingRestitution
@@ -80,6 +80,7 @@ __all__ = [
     "fit",
     "flight",
     "from_roundness",
+    "gas",
     "posterior",
     "reduce",
     "required_roundness",

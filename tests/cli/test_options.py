@@ -78,5 +78,6 @@ def test_no_number(words: str, option: Any, tmp_path: Path, monkeypatch: pytest.
         assert done.exit_code == 2, (name, text)
         named = {first, first.removeprefix("--"), first.removeprefix("--").replace("-", "_"), option.name}
         assert any(one in text for one in named), (name, text)
-        assert len(text) < 3000
+        # Typer before 0.20 repeats the word, and frames each line of it.
+        assert len(text) < 3000 + 2 * len(value)
         assert sorted(tmp_path.iterdir()) == before, name
