@@ -6,6 +6,7 @@ import shutil
 from importlib.metadata import version as version_of
 from pathlib import Path
 
+from docutils import nodes
 from PIL import Image
 from sphinx.ext import autosummary
 from sphinx.pycode import ModuleAnalyzer
@@ -62,12 +63,14 @@ html_theme = "pydata_sphinx_theme"
 html_title = f"restitution {release}"
 html_extra_path = ["../python/restitution/explorer/explorer.html", str(EXTRA)]
 html_static_path = ["_static", str(BUILT)]
+templates_path = ["_templates"]
 html_favicon = "_static/favicon.svg"
 html_js_files = ["zoom.js"]
 html_css_files = ["site.css"]
 html_theme_options: dict[str, object] = {
     "show_prev_next": True,
     "navigation_with_keys": True,
+    "navbar_end": ["explorer-link", "theme-switcher"],
     "header_links_before_dropdown": 8,
     "secondary_sidebar_items": ["page-toc"],
     "footer_start": ["copyright"],
@@ -85,7 +88,7 @@ if site := os.environ.get("RESTITUTION_SITE"):
         "version_match": os.environ["RESTITUTION_VERSION"],
     }
     html_theme_options["check_switcher"] = False
-    html_theme_options["navbar_end"] = ["version-switcher", "theme-switcher"]
+    html_theme_options["navbar_end"] = ["explorer-link", "version-switcher", "theme-switcher"]
     # The card that a link to any of its pages becomes elsewhere.
     myst_html_meta = {
         "property=og:title": "restitution: the coefficient of restitution as a distribution",
@@ -172,6 +175,14 @@ def _as_on_the_site(app: object, name: str, source: list[str]) -> None:
     source[0] = re.sub(r"\]\(../python/restitution/explorer/explorer\.html#?", "](explorer:", text)
 
 
+def _without_folders(app: object, tree: nodes.document) -> None:
+    """Show a warning of a cell as it is, without the file that the cell was run from."""
+    for block in tree.findall(nodes.literal_block):
+        if found := re.match(r"/\S*ipykernel\S*:\d+: ", block.astext()):
+            block.rawsource = block.astext()[found.end() :]
+            block.children = [nodes.Text(block.rawsource)]
+
+
 def _explorer_leads_back(app: object, error: Exception | None) -> None:
     """Give the explorer, which may stand anywhere, a link to the pages beside it."""
     page = Path(app.outdir) / "explorer.html"  # type: ignore[attr-defined]
@@ -184,4 +195,5 @@ def setup(app: object) -> None:
     """Let Sphinx know."""
     app.connect("build-finished", _explorer_leads_back)  # type: ignore[attr-defined]
     app.connect("source-read", _as_on_the_site)  # type: ignore[attr-defined]
+    app.connect("doctree-read", _without_folders)  # type: ignore[attr-defined]
     app.connect("autodoc-process-docstring", _as_written)  # type: ignore[attr-defined]

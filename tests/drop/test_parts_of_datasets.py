@@ -90,7 +90,6 @@ def test_one_of_a_comparison() -> None:
     for call in (
         rs.FluctuatingRestitution.from_statistics,
         figures.map,
-        figures.moments,
         lambda data: figures.densities(data, 0.75),
     ):
         with pytest.raises(ValueError, match=text):
@@ -98,6 +97,7 @@ def test_one_of_a_comparison() -> None:
         call(found.sel(body="a").isel(law=0))
     (axes,) = figures.scatter(found.isel(law=0)).axes
     assert axes.get_legend_handles_labels()[1] == ["a", "b"]
+    assert [len(axes.lines) for axes in figures.moments(found).axes] == 4 * [2]
 
 
 def test_statistics_in_any_order_or_in_part() -> None:

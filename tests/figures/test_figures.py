@@ -60,6 +60,21 @@ def test_a_figure_of_ones_own_takes_three_lines(tmp_path: Path) -> None:
         rs.figures.trajectory(data, 3)
 
 
+def test_bars_of_resting_are_the_shares_and_the_line_what_is_decided() -> None:
+    """A bar for each face with its two shares; the line ends at the share that is decided at all."""
+    brick = rs.Box(a=1e-2, b=2e-2, c=3e-2)
+    run = rs.simulate(brick, rs.Frictionless(normal=0.5), particles=40, impacts=100, record="state")
+    found = rs.resting(brick, run)
+    shares, decided = rs.figures.resting(found).axes
+    heights = [bar.get_extents().transformed(shares.transData.inverted()).height for bar in shares.patches]
+    np.testing.assert_allclose(heights, [*found["most"], *found["least"]], atol=1e-12)
+    assert np.asarray(decided.lines[0].get_ydata(), float)[-1] == pytest.approx(
+        1.0 - found.attrs["undecided"]
+    )
+    with pytest.raises(ValueError, match="found lacks decided_after, height"):
+        rs.figures.resting(run)
+
+
 def test_the_drawn_trajectory_lands_where_the_body_touches(tmp_path: Path) -> None:
     """At every impact the centre of mass is R + L/2 |cos θ| high (Eqs. 2, 5): heights that only θ knows."""
     body, law = rs.Dumbbell(radius=3e-3, separation=3e-3), rs.TangentialRestitution(normal=0.9)

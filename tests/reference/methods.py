@@ -169,6 +169,7 @@ CALLS |= {
     "figures.scatter": (figures.scatter, some("found")),
     "figures.moments": (figures.moments, some("found")),
     "figures.fraction": (figures.fraction, some("found")),
+    "figures.resting": (figures.resting, lambda: {"found": rs.resting(good()["die"], good()["dropped"])}),
     "figures.trajectory": (figures.trajectory, some("data", particle=1, impacts=5)),
     "figures.body": (figures.body, some("body", angle=0.5)),
     "figures.impact": (figures.impact, some("data", particle=1, impact=2)),

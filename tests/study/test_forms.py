@@ -37,6 +37,19 @@ def recorded(separation: float) -> xr.Dataset:
     return rs.simulate(body, law, particles=1024, impacts=60, seed=7)
 
 
+def test_moments_of_a_study_are_drawn_by_point(found: xr.Dataset) -> None:
+    """A line for each, named by the value of what varies; too many are refused with what to do."""
+    assert rs.figures.moments(found).legends[0].get_title().get_text() == "separation (m)"
+    axes = rs.figures.scatter(found).axes[0]
+    assert axes.get_legend_handles_labels()[1] == ["0.0003", "0.002"]
+    shown = np.asarray(axes.lines[1].get_ydata(), float)
+    expected = found["std_restitution"].isel(separation=1).to_numpy()
+    np.testing.assert_allclose(shown[np.isfinite(shown)], expected[np.isfinite(shown)])
+    many = found.isel(separation=[0] * 25)
+    with pytest.raises(ValueError, match="found has 25 points in separation: must be at most 24; take some"):
+        rs.figures.moments(many)
+
+
 def test_quantiles_are_those_of_the_impacts_of_each_bin(found: xr.Dataset) -> None:
     """To a bin of 0.004 where bins are not thinned; from thinned bins to two thinned ones, 0.02 here."""
     assert found["restitution_quantile"].dims == ("separation", "velocity", "level")

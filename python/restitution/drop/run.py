@@ -114,8 +114,10 @@ class Run(Parameters):
     ----------
     body, law
         The body and the collision law.
-    particles, impacts : int
-        Number of particles, and the most impacts that each may have; both > 0.
+    particles : int
+        Number of particles that are dropped, each by itself; > 0.
+    impacts : int
+        The most impacts that a particle may have, > 0; it then ends.
     release_height : float or RandomHeight
         Distance of the centre of mass from the plane at release, in m, the same for all or drawn at random;
         no part may be below the plane.

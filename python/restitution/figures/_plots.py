@@ -36,6 +36,7 @@ from restitution.figures.style import (
     ink,
     letter,
     panels,
+    points,
     styled,
 )
 
@@ -49,6 +50,8 @@ VELOCITY = r"impact velocity $v_G^n$ (m/s)"
 RESTITUTION = r"coefficient of restitution $\varepsilon$"
 FRACTION = r"$E_\mathrm{rot}/E_\mathrm{tot}$"
 DEVIATION = r"standard deviation $\sigma(\varepsilon)$"
+MOST = 24
+"""Lines of a figure, which differ by colour and by marker or stroke."""
 
 
 @styled
@@ -174,9 +177,9 @@ def scatter(found: xr.Dataset | Mapping[str, xr.Dataset], *, style: Style | None
     Parameters
     ----------
     found : xarray.Dataset or mapping of str to xarray.Dataset
-        Statistics by velocity: one, several with their names, or those of `restitution.compare`, whose
-        lines are named by body and law. Bins of fewer than 100 impacts are left out, and those that reach
-        down to v = 0, where ε diverges.
+        Statistics by velocity: one, several with their names, those of `restitution.compare`, whose lines
+        are named by body and law, or a study of `restitution.sweep`, named by its parameters. Bins of fewer
+        than 100 impacts are left out, and those that reach down to v = 0, where ε diverges.
     style : str, optional
         "paper", "page" or "slides", with "-dark" for a dark ground.
 
@@ -222,7 +225,7 @@ def fraction(found: xr.Dataset | Mapping[str, xr.Dataset], *, style: Style | Non
 
 @styled
 def moments(
-    found: xr.Dataset | FluctuatingRestitution,
+    found: xr.Dataset | Mapping[str, xr.Dataset] | FluctuatingRestitution,
     *,
     exact: xr.Dataset | None = None,
     style: Style | None = None,
@@ -233,10 +236,9 @@ def moments(
 
     Parameters
     ----------
-    found : xarray.Dataset or FluctuatingRestitution
-        Statistics by velocity, or a learned distribution. Bands are ± one standard error where there are
-        standard errors. Bins of fewer than 100 impacts are left out, and those that reach down to v = 0,
-        where ε diverges.
+    found : xarray.Dataset, mapping of str to xarray.Dataset, or FluctuatingRestitution
+        As for `scatter`, or a learned distribution. Bands are ± one standard error where there are standard
+        errors.
     exact : xarray.Dataset, optional
         Mean and standard deviation of `restitution.analytic.near_round`, drawn as dashed lines.
     style : str, optional
@@ -267,7 +269,7 @@ def moments(
         if isinstance(found, FluctuatingRestitution):
             _learned_moment(axes, found, name)
         else:
-            _moment(axes, found, name)
+            _moments(axes, found, name)
         axes.set_ylabel(label)
         letter(axes, f"({mark})", left=False)
     if exact is not None:
@@ -280,8 +282,64 @@ def moments(
         for axes, values in zip(rows[0], (mean, deviation), strict=True):
             line(axes, speeds, values, color=ink(), linestyle="--", label="nearly round")
             axes.legend(loc="lower left")
+    elif named := places[0].get_legend_handles_labels()[1]:
+        figure.legend(places[0].lines, named, title=_varied(found), ncols=4, loc="outside upper center")
     for axes in rows[-1]:
         axes.set_xlabel(VELOCITY)
+    return figure
+
+
+@styled
+def resting(found: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw how many particles rest on each face, and after how many impacts that is decided.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        As from `restitution.resting`. A bar goes to the share that rests on a face for certain; the pale one
+        above it adds all undecided particles. Error bars are ± one standard error.
+    style : str, optional
+        "paper", "page" or "slides", with "-dark" for a dark ground.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> brick = rs.Box(a=1e-2, b=2e-2, c=3e-2)
+    >>> data = rs.simulate(brick, rs.Frictionless(normal=0.5), particles=50, impacts=200, record="state")
+    >>> figure = rs.figures.resting(rs.resting(brick, data))
+    """
+    names = ("height", "least", "most", "least_error", "most_error")
+    dimensions: dict[str, tuple[str, ...]] = {"decided_after": ("particle",)}
+    dimensions |= dict.fromkeys(names, ("face",))
+    after, *faces = variables("found", found, "restitution.resting", dimensions)
+    for name, values in zip(names, faces, strict=True):
+        check_drawable(f"found.{name}", values)
+    height, least, most, *errors = faces
+    figure, [[shares, decided]] = panels(PAGE, 2.7, columns=2, width_ratios=(3, 2))
+    place = np.arange(height.size)
+    look: dict[str, Any] = {
+        "ecolor": ink(0.8),
+        "capsize": points(2.0),
+        "error_kw": {"elinewidth": points(0.8)},
+    }
+    shares.bar(
+        place, most, 0.7, yerr=errors[1], color=colors()[0], alpha=0.35, label="and all undecided", **look
+    )
+    shares.bar(place, least, 0.7, yerr=errors[0], color=colors()[0], label="decided", **look)
+    shares.xaxis.set_major_locator(MaxNLocator(10, integer=True))
+    shares.tick_params(axis="x", which="minor", bottom=False, top=False)
+    shares.set_xlabel("face, from the highest centre of mass to the lowest")
+    shares.set_ylabel("share of the particles")
+    shares.set_ylim(top=1.25 * float(most.max(initial=0.0)))
+    shares.legend(loc="upper left")
+    known = np.sort(after[after > 0])
+    decided.step([0, *known], np.arange(known.size + 1) / after.size, where="post", color=colors()[1])
+    decided.set_ylim(0.0, 1.0)
+    decided.set_xlim(left=0.0)
+    decided.set_xlabel("impacts")
+    decided.set_ylabel("share decided")
+    for axes, text in ((shares, "(a)"), (decided, "(b)")):
+        letter(axes, text, left=False)
     return figure
 
 
@@ -360,19 +418,30 @@ def _over_velocity(
 ) -> tuple[Figure, Axes]:
     """Draw one of the quantities by velocity of one or several sets of statistics."""
     figure, [[axes]] = panels(COLUMN, 2.7)
-    lines = _lines(found)
-    for k, (each, one) in enumerate(lines.items()):
-        marker = MARKERS[k // len(COLORS) % len(MARKERS)]
-        look: dict[str, Any] = {"color": colors()[k % len(COLORS)], "marker": marker}
-        _moment(axes, one, name, label=each if len(lines) > 1 else None, **look)
+    _moments(axes, found, name, marked=True)
     low, high = axes.get_xlim()
     steps = (step * 10.0**power for power in range(-9, 9) for step in (1, 2, 5))
     plain_log(axes, [v for v in steps if low <= v <= high and v > 0] or [high])
     axes.set_xlabel(VELOCITY)
     axes.set_ylabel(label)
-    if len(lines) > 1:
-        axes.legend()
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(title=_varied(found))
     return figure, axes
+
+
+def _moments(
+    axes: Axes, found: xr.Dataset | Mapping[str, xr.Dataset], name: str, *, marked: bool = False
+) -> None:
+    """Draw a moment of one or several sets of statistics, with labels where there are several."""
+    lines = _lines(found)
+    for k, (each, one) in enumerate(lines.items()):
+        again, color = divmod(k, len(COLORS))
+        look: dict[str, Any] = {"color": colors()[color]}
+        if marked:
+            look["marker"] = MARKERS[again % len(MARKERS)]
+        else:
+            look["linestyle"] = ("-", "--", ":", "-.")[again % 4]
+        _moment(axes, one, name, label=each if len(lines) > 1 else None, **look)
 
 
 def _learned_moment(axes: Axes, found: FluctuatingRestitution, name: str) -> None:
@@ -413,16 +482,28 @@ def _lines(found: xr.Dataset | Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset
             if not isinstance(one, xr.Dataset):
                 raise ParameterError(wrong(f"found[{name!r}]", one, "a Dataset of restitution.statistics"))
         return {str(name): one for name, one in found.items()}
-    axes = [axis for axis in ("body", "law") if axis in found.dims]
-    if not axes:
-        return {"": found}
+    axes = [axis for axis in found["number"].dims if axis != "velocity"] if "number" in found else []
+    number = int(np.prod([found.sizes[axis] for axis in axes]))
+    if number > MOST:
+        names = ", ".join(str(axis) for axis in axes)
+        text = f" has {number} points in {names}: must be at most {MOST}; take some by sel"
+        raise ParameterError(Problem("found", text))
     lines = {}
     for place in product(*(range(found.sizes[axis]) for axis in axes)):
         one = found.isel(dict(zip(axes, place, strict=True)))
-        names = [str(found[axis].values[at]) for axis, at in zip(axes, place, strict=True)]
-        told = [name for name, axis in zip(names, axes, strict=True) if found.sizes[axis] > 1]
-        lines[", ".join(told or names[:1])] = one
+        values = (one[axis].values for axis in axes if found.sizes[axis] > 1)
+        told = [f"{x:g}" if x.dtype.kind in "fiu" else str(x) for x in values]
+        lines[", ".join(told)] = one
     return lines
+
+
+def _varied(found: object) -> str:
+    """Name the parameters of a study, whose values name the lines, with their units."""
+    if not isinstance(found, xr.Dataset):
+        return ""
+    axes = [found[axis] for axis in found["number"].dims if axis != "velocity" and found.sizes[axis] > 1]
+    units = {axis.name: axis.attrs.get("units", "1") for axis in axes if axis.dtype.kind in "fiu"}
+    return ", ".join(f"{name}" if unit == "1" else f"{name} ({unit})" for name, unit in units.items())
 
 
 def _bin_density(found: xr.Dataset, name: str, v: float) -> tuple[Any, Any, str]:

@@ -175,30 +175,41 @@ def _draw(axes: Axes, view: Sideview, when: int) -> None:
     draw.plane(axes, x, 1.9 * far, 0.25 * far)
     draw.scale_bar(axes, x - 1.9 * far, -0.5 * far, 2.0 * far)
     solid.place(axes, body, one.axis, one.centre)
-    if when == 0:  # the lever arm, and how high the centre of mass is
+    beyond = one.velocity[when][:2]
+    if when == 0:  # the lever arm
         axes.plot(*zip(centre, contact, strict=True), color="black", linewidth=points(1.0), zorder=3.0)
         arm, v = contact - centre, one.velocity[0]
-        side = "left" if arm[0] * v[1] < arm[1] * v[0] else "right"  # where v is not
+        aside = 1.0 if arm[0] * v[1] >= arm[1] * v[0] else -1.0  # the side on which v is
         middle = 0.4 * centre + 0.6 * contact
-        name = axes.text(middle[0], middle[1], r"  $\mathbf{r}_c$  ", ha=side, va="center", zorder=5.0)
+        name = axes.text(
+            middle[0],
+            middle[1],
+            r"  $\mathbf{r}_c$  ",
+            ha="right" if aside > 0.0 else "left",
+            va="center",
+            zorder=5.0,
+        )
         name.set_path_effects(draw.halo())
+        beyond = np.array([aside, 0.0])  # at the tip of v are the plane and the point of contact
     draw.marks(axes, centre, contact)
     length, angle = view.scales
     v, w = one.velocity[when], float(one.rotation[when][2])
-    prime = r"^\prime" if when else ""
+    prime = "\N{PRIME}" if when else ""  # a letter: as a superscript of a bold one it floats off
     draw.arrow(axes, centre, 1e3 * length * v[:2], draw.VELOCITY)
-    _label(axes, centre + 1e3 * length * v[:2], v[:2], rf"$\mathbf{{v}}{prime}$", draw.VELOCITY)
+    tip = centre + 1e3 * length * v[:2]
+    _label(axes, tip, beyond, rf"$\mathbf{{v}}${prime}", draw.VELOCITY)
     if abs(angle * w) > 0.02:
         draw.turn(axes, centre, draw.ARC * far, angle * w, draw.ROTATION)
         phi = 0.5 * (np.pi + angle * w)  # where the arc ends
         way = np.array([np.cos(phi), np.sin(phi)])
-        _label(axes, centre + draw.ARC * far * way, way, rf"$\boldsymbol{{\omega}}{prime}$", draw.ROTATION)
+        _label(axes, centre + draw.ARC * far * way, way, rf"$\boldsymbol{{\omega}}${prime}", draw.ROTATION)
     if when:
         push = 1e3 * length * one.impulse[:2]
         draw.arrow(axes, contact, push, draw.IMPULSE)
-        # Beside the tip: the lever arm and the centre of mass are beyond it.
-        aside = np.array([1.0 if push[0] >= 0.0 else -1.0, -0.3])
-        _label(axes, contact + push, 1.6 * aside, r"$\mathbf{P}/m$", draw.IMPULSE)
+        # Beside its middle: at the tip is the centre of mass, with the velocity.
+        middle = contact + 0.5 * push
+        away = np.array([1.0 if middle[0] > centre[0] else -1.0, 0.0])
+        _label(axes, middle, away, r"$\mathbf{P}/m$", draw.IMPULSE, 14.0)
     told = (
         rf"after: $\varepsilon = {one.restitution:.2f}$"
         if when
@@ -209,10 +220,10 @@ def _draw(axes: Axes, view: Sideview, when: int) -> None:
     axes.set_ylim(-0.6 * far, 1e3 * one.centre[1] + (draw.ARC + 0.3) * far)
 
 
-def _label(axes: Axes, at: FloatArray, along: FloatArray, text: str, number: int) -> None:
-    """Write the name of an arrow beyond its tip."""
+def _label(axes: Axes, at: FloatArray, along: FloatArray, text: str, number: int, far: float = 7.0) -> None:
+    """Write the name of an arrow so many points beyond its tip."""
     size = float(np.hypot(*along)) or 1.0
-    offset = points(7.0) * np.asarray(along) / size
+    offset = points(far) * np.asarray(along) / size
     name = axes.annotate(
         text,
         tuple(at),
