@@ -43,6 +43,7 @@ pub mod law;
 mod math;
 mod memory;
 mod motion;
+pub mod pair;
 mod random;
 mod record;
 mod shape;

@@ -27,6 +27,7 @@ mod laws_energy;
 mod long_runs;
 mod materials;
 mod oracle;
+mod pairs;
 mod records;
 mod release;
 mod scalar;

@@ -7,6 +7,7 @@ mod distribution;
 mod errors;
 mod histogram;
 mod laws;
+mod pair;
 mod records;
 mod release;
 mod watch;
@@ -125,6 +126,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     describe::add_to(module)?;
     bodies::add_to(module)?;
     laws::add_to(module)?;
+    pair::add_to(module)?;
     distribution::add_to(module)?;
     counts::add_to(module)?;
     records::add_to(module)?;

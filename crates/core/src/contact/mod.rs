@@ -4,10 +4,12 @@ mod certify;
 mod convex;
 mod first;
 mod lanes;
+mod pair;
 mod plane;
 
 pub(crate) use first::{Fall, FirstContact, NoContact};
 pub(crate) use lanes::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
 };
+pub(crate) use pair::{PairDeparture, PairFlight, PairSearch, PairTouch, poses};
 pub(crate) use plane::Departure;

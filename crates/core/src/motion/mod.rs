@@ -6,6 +6,7 @@ mod rotation;
 mod series;
 mod symmetric;
 mod top;
+mod turn;
 
 pub use bounds::SpinBounds;
 pub use rotation::Rotation;
@@ -14,3 +15,4 @@ pub(crate) use symmetric::{
     Attitude, Flight, PlanarFlight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion,
     SpatialState, SymmetricState,
 };
+pub(crate) use turn::{Pose, Turn};

@@ -1,5 +1,6 @@
 //! Solids within closed surfaces of triangles.
 
+use super::pieces::Extent;
 use super::polyhedron::{faces, solid, vertex};
 use super::rigid::{CENTRE, Rigid, TENSOR, vectors};
 use super::{BodyKind, Form};
@@ -75,7 +76,7 @@ impl Rigid {
         corners.sort_unstable();
         corners.dedup();
         let vertices: Vec<_> = corners.iter().map(|&i| vertex(&points[i])).collect();
-        Self::of_balls(inertia, "points", vertices.into_iter())
+        Ok(Self::of_balls(inertia, "points", vertices.into_iter())?.with_extent(Extent::Other))
     }
 }
 

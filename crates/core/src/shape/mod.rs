@@ -10,6 +10,7 @@ mod ellipsoid;
 mod hull;
 mod mass;
 mod mesh;
+mod pieces;
 mod polyhedron;
 mod revolution;
 mod revolved;
@@ -29,6 +30,7 @@ pub use clump::Matter;
 pub use hull::triangles as convex_hull;
 
 pub(crate) use convex::{Convex, ConvexSurface};
+pub(crate) use pieces::Piece;
 pub use revolution::*;
 pub(crate) use revolved::Band;
 pub use rigid::{Inertia, Rigid, RigidBall};

@@ -1,5 +1,6 @@
 //! Convex polyhedra.
 
+use super::pieces::Extent;
 use super::rigid::{CENTRE, Inertia, Rigid, RigidBall, TENSOR, VolumeMoments, vectors};
 use super::{BodyKind, Form, check_density, hull};
 use crate::Error;
@@ -58,7 +59,7 @@ impl Rigid {
     ) -> Result<Self, Error> {
         let inertia = solid(points, triangles, f64::abs, density)?;
         let vertices: Vec<_> = points.iter().map(vertex).collect();
-        Self::of_balls(inertia, "points", vertices.into_iter())
+        Ok(Self::of_balls(inertia, "points", vertices.into_iter())?.with_extent(Extent::Hull))
     }
 }
 

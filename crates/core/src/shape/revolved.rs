@@ -1,6 +1,7 @@
 //! Solids of revolution with any profile.
 
 use super::convex::{Convex, ConvexSurface};
+use super::pieces::Extent;
 use super::rigid::{CENTRE, Inertia, Rigid, RigidSurface, TENSOR};
 use super::{BodyKind, Form, check_density};
 use crate::Error;
@@ -252,7 +253,14 @@ impl Rigid {
         let unit = unit.fold(0.0, f64::max);
         let bands = touching.iter().map(band(unit)).collect();
         let surface = Convex::new(ConvexSurface::Bands(bands));
-        Self::new(inertia, unit, |_| Ok(RigidSurface::Convex(surface)))
+        let body = Self::new(inertia, unit, |_| Ok(RigidSurface::Convex(surface)))?;
+        let within = sums(touching, centre)[0].abs() - content.abs();
+        let concave = within > 1e-12 * content.abs();
+        Ok(if concave {
+            body.with_extent(Extent::Other)
+        } else {
+            body
+        })
     }
 }
 

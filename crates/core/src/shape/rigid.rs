@@ -1,6 +1,7 @@
 //! Bodies of any shape: mass, principal axes, and what can touch the plane.
 
 use super::convex::Convex;
+use super::pieces::Extent;
 use super::top::Top;
 use super::tree::{BallTree, Least, NormalMotion, Point, Pruning};
 use crate::Error;
@@ -62,6 +63,7 @@ pub struct Rigid {
     pub top: Top,
     /// The parts that can touch, in units of R and the principal axes.
     pub(crate) skin: RigidSurface,
+    pub(crate) extent: Extent,
 }
 
 impl VolumeMoments {
@@ -219,13 +221,24 @@ impl Rigid {
         skin: impl FnOnce(Quaternion) -> Result<RigidSurface, Error>,
     ) -> Result<Self, Error> {
         let (top, axes) = principal(&inertia, unit)?;
+        let skin = skin(axes)?;
+        let extent = match skin {
+            RigidSurface::Points(_) => Extent::Balls,
+            RigidSurface::Convex(_) => Extent::Hull,
+        };
         Ok(Self {
             inertia,
             unit,
             axes,
             top,
-            skin: skin(axes)?,
+            skin,
+            extent,
         })
+    }
+
+    /// The same body with another extent than its surface has by itself.
+    pub(super) fn with_extent(self, extent: Extent) -> Self {
+        Self { extent, ..self }
     }
 
     /// The same parts with another inertia: mass, centre and tensor, in the axes that the body was given in.
@@ -233,8 +246,10 @@ impl Rigid {
     /// # Errors
     /// Unless the mass is positive, and the tensor is that of a body.
     pub fn with_inertia(self, inertia: Inertia) -> Result<Self, Error> {
+        let extent = self.extent;
         let RigidSurface::Convex(convex) = &self.skin else {
-            return Self::of_balls(inertia, "points", self.balls()?.into_iter());
+            let body = Self::of_balls(inertia, "points", self.balls()?.into_iter())?;
+            return Ok(body.with_extent(extent));
         };
         let shift = self
             .axes
@@ -247,6 +262,7 @@ impl Rigid {
             let moved = convex.with_frame(turn, shift / self.unit, unit / self.unit);
             Ok(RigidSurface::Convex(moved))
         })
+        .map(|body: Self| body.with_extent(extent))
     }
 
     /// The principal moments of inertia, in kg m².

@@ -1,5 +1,6 @@
 //! Rough bodies: asperities, small balls, on the surface of a body of balls.
 
+use super::pieces::Extent;
 use super::rigid::{Inertia, Rigid, RigidBall};
 use super::{BodyKind, Form, Matter, check_length};
 use crate::Error;
@@ -149,7 +150,12 @@ impl Rigid {
             Some(ball) => *ball,
             None => roughness.asperity(&surface, i - balls.len()),
         });
-        Self::of_balls(inertia, "asperities", parts)
+        let body = Self::of_balls(inertia, "asperities", parts)?;
+        Ok(if barrel {
+            body.with_extent(Extent::Other)
+        } else {
+            body
+        })
     }
 }
 

@@ -51,6 +51,10 @@ pub trait Shape {
     fn centre_of_mass(&self) -> f64 {
         0.0
     }
+    /// True if the body is its convex hull; false if it is made of the spheres of its hull.
+    fn is_filled(&self) -> bool {
+        false
+    }
     /// The curve that the surface cuts out of a plane through the axis, as far as it is not straight: the arc at the end to which the
     /// axis points, and that at the other end, joined by a straight line. In m; the origin is the centre of mass.
     fn outline(&self) -> [Arc; 2];
@@ -78,6 +82,8 @@ pub struct Solid {
     pub axial_inertia: f64,
     /// Position of the centre of mass on the axis, in m, relative to the middle of the shape ([`Shape::centre_of_mass`]).
     pub centre_of_mass: f64,
+    /// True if the body is its convex hull ([`Shape::is_filled`]).
+    pub is_filled: bool,
     /// The outline ([`Shape::outline`]).
     pub outline: [Arc; 2],
     /// The body in the core's units.
@@ -92,6 +98,7 @@ impl<S: Shape> From<S> for Solid {
             transverse_inertia: shape.transverse_inertia(),
             axial_inertia: shape.axial_inertia(),
             centre_of_mass: shape.centre_of_mass(),
+            is_filled: shape.is_filled(),
             outline: shape.outline(),
             scaled: shape.scaled(),
         }

@@ -105,6 +105,10 @@ impl Shape for Spherocylinder {
         self.density * self.radius.powi(5) * PI * self.axial_factor()
     }
 
+    fn is_filled(&self) -> bool {
+        true
+    }
+
     fn outline(&self) -> [Arc; 2] {
         let half = 0.5 * self.separation;
         Arc::caps([half, -half], [self.radius; 2], [0.5 * PI; 2])

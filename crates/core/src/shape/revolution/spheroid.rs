@@ -109,6 +109,10 @@ impl Shape for Spheroid {
         self.mass() * self.unit().powi(2) * self.scaled().axial
     }
 
+    fn is_filled(&self) -> bool {
+        true
+    }
+
     fn outline(&self) -> [Arc; 2] {
         Arc::halves(0.0, self.polar, self.equatorial)
     }

@@ -1,8 +1,8 @@
 //! Hulls that consist of one or two spheres on the axis.
 
-use super::{AxisMotion, Hull, HullPart};
+use super::{AxisMotion, Ball, Hull, HullPart};
 use crate::simd::{Mask, Pack};
-use pulp::Simd;
+use pulp::{Scalar, Simd};
 
 /// The parameters of a hull of spheres, whose gaps are linear in e_z.
 pub(super) trait Balls: Copy {
@@ -20,6 +20,17 @@ pub(super) trait Balls: Copy {
     fn radius<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Pack<S, K>;
     /// +1 or −1 for a contact of sphere 1 or 2.
     fn name<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Pack<S, K>;
+}
+
+/// The balls themselves.
+pub(super) fn balls<B: Balls>(hull: &B) -> Vec<Ball> {
+    let ball = |sphere: usize| Ball {
+        offset: hull.levers()[sphere],
+        radius: hull
+            .radius(Mask::<_, 1>::splat(Scalar::new(), sphere == 0))
+            .as_slice()[0],
+    };
+    (0..1 + usize::from(B::TWO)).map(ball).collect()
 }
 
 impl<B: Balls> Hull for B {

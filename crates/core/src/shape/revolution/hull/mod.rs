@@ -222,6 +222,16 @@ impl Surface {
         with_hull!(self, hull => hull.gap(&named(hull, sphere), one(cos_tilt), one(height)).as_slice()[0])
     }
 
+    /// The balls that it is made of, if it is.
+    pub(crate) fn balls(&self) -> Option<Vec<Ball>> {
+        match self {
+            Self::EqualBalls(hull) => Some(balls::balls(hull)),
+            Self::TwoBalls(hull) => Some(balls::balls(hull)),
+            Self::OneBall(hull) => Some(balls::balls(hull)),
+            Self::Ellipsoid(_) => None,
+        }
+    }
+
     /// Height at which a sphere touches.
     pub fn touching_height(&self, sphere: Sphere, cos_tilt: f64) -> f64 {
         with_hull!(self, hull => hull.touching_height(&named(hull, sphere), one(cos_tilt)).as_slice()[0])

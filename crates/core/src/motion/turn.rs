@@ -1,0 +1,112 @@
+//! How the points of a free body move about its centre of mass, along one flight.
+//!
+//! A point **p** on the axis **e** of a body with two equal moments J turns with it about the angular momentum **Λ** at the rate |Λ|/J, and
+//! |**p**″| = |p||**ω** × **e**||Λ|/J. Any other point has |**p**″| ≤ (1 + a/√3)Ω²|**p**| ([`SpinBounds`](super::SpinBounds)).
+
+use super::Rotation;
+use crate::math::{Quaternion, Vector};
+use crate::shape::{Symmetry, Top};
+use crate::simd::elementary::sincos;
+
+/// The rotation of a body during a flight.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "two live at a time, on the stack"
+)]
+pub(crate) enum Turn {
+    /// All points are on an axis of this number: the part of it along **Λ**, that across and **Λ** × **e**/|Λ|, the rate.
+    Axis(usize, [Vector; 3], f64),
+    Any(Rotation),
+}
+
+/// A body at a time: its axis with **e**′ and **e**″, or attitude and ω in its own axes.
+pub(crate) enum Pose {
+    Axis(usize, [Vector; 3]),
+    Any(Quaternion, Vector),
+}
+
+impl Top {
+    /// True if **e**, the principal axis of this number, turns about **Λ** at a constant rate.
+    pub(crate) fn precesses(&self, axis: usize) -> bool {
+        match self.symmetry() {
+            Symmetry::Isotropic => true,
+            Symmetry::About(own) => own == axis,
+            Symmetry::Asymmetric => false,
+        }
+    }
+}
+
+impl Turn {
+    /// The rotation from this attitude with this ω in the axes of the body, whose points are all on a principal axis that precesses, if that
+    /// is given; and the largest acceleration of a point, per distance from the centre of mass.
+    #[inline(always)]
+    pub fn new(top: &Top, axis: Option<usize>, attitude: Quaternion, spin: Vector) -> (Self, f64) {
+        let Some(axis) = axis else {
+            let bound = top.bounds(spin).whole;
+            return (Self::Any(Rotation::new(*top, attitude, spin)), bound);
+        };
+        let e = attitude.rotate(unit(axis));
+        let across = top.moments()[(axis + 1) % 3];
+        let momentum = top.momentum(attitude, spin) / across;
+        let rate = momentum.norm();
+        if rate == 0.0 {
+            let none = Vector::default();
+            return (Self::Axis(axis, [e, none, none], 0.0), 0.0);
+        }
+        let about = momentum / rate;
+        let third = about.cross(e);
+        let second = third.cross(about);
+        let along = about * about.dot(e);
+        let bound = rate * rate * third.norm();
+        (Self::Axis(axis, [along, second, third], rate), bound)
+    }
+
+    /// The body at a time ≥ 0.
+    #[inline(always)]
+    pub fn at(&mut self, time: f64) -> Pose {
+        match self {
+            Self::Axis(axis, [along, second, third], rate) => {
+                let (sine, cosine) = sincos(*rate * time);
+                let level = third.mul_add(sine, *second * cosine);
+                let change = third.mul_add(cosine, *second * -sine) * *rate;
+                let bend = level * -(*rate * *rate);
+                Pose::Axis(*axis, [*along + level, change, bend])
+            }
+            Self::Any(rotation) => {
+                let (attitude, spin) = rotation.at(time);
+                Pose::Any(attitude, spin)
+            }
+        }
+    }
+}
+
+impl Pose {
+    /// Where a point of the body is, from the centre of mass, and its velocity relative to it, in space.
+    #[inline(always)]
+    pub fn moves(&self, point: Vector) -> [Vector; 2] {
+        match self {
+            Self::Axis(axis, [e, change, _]) => {
+                let along = point.parts()[*axis];
+                [*e * along, *change * along]
+            }
+            Self::Any(attitude, spin) => [point, spin.cross(point)].map(|v| attitude.rotate(v)),
+        }
+    }
+
+    /// Its acceleration.
+    #[inline(always)]
+    pub fn bends(&self, top: &Top, point: Vector) -> Vector {
+        match self {
+            Self::Axis(axis, [_, _, bend]) => *bend * point.parts()[*axis],
+            Self::Any(attitude, spin) => {
+                attitude.rotate(top.change(*spin).cross(point) + spin.cross(spin.cross(point)))
+            }
+        }
+    }
+}
+
+/// The principal axis of this number, in the axes of the body.
+fn unit(axis: usize) -> Vector {
+    let [x, y, z] = [0, 1, 2].map(|i| f64::from(i == axis));
+    Vector::new(x, y, z)
+}

@@ -1,0 +1,394 @@
+//! One encounter: the approach, contacts until the bodies part, and the way out.
+//!
+//! An encounter begins where it is given, and ends where the centres are farther apart than the bodies reach and move away from each other. A contact
+//! that is not left, or contacts that accumulate, end it as a collapse.
+
+use super::Partner;
+use crate::contact::{PairDeparture, PairFlight, PairSearch, PairTouch, poses};
+use crate::law::{Compliance, Law};
+use crate::math::{Quaternion, Symmetric, Vector};
+use crate::motion::{Rotation, Turn};
+use crate::shape::Piece;
+use crate::simd::Level;
+use crate::{COLLAPSE_RUN, Fault};
+use pulp::{Simd, WithSimd};
+
+/// M T² over the sum of the reaches below which a flight of duration T counts as unresolved.
+const UNRESOLVED: f64 = 8.0 / 8_796_093_022_208.0;
+
+/// Position and motion of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairState {
+    /// The centre of mass.
+    pub position: Vector,
+    /// Its velocity.
+    pub velocity: Vector,
+    /// The rotation from the axes that the body was given in to those of space.
+    pub attitude: Quaternion,
+    /// ω in the axes of space.
+    pub spin: Vector,
+}
+
+/// How an encounter ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// Without a contact.
+    Missed,
+    /// The bodies have parted.
+    Parted,
+    /// Contacts accumulate, or last.
+    Collapse,
+}
+
+impl Ending {
+    /// The names, in the order of the numbers.
+    pub const NAMES: [&'static str; 3] = ["missed", "parted", "collapse"];
+}
+
+/// A contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// The time since the beginning.
+    pub time: f64,
+    /// The unit vector from the second body to the first.
+    pub normal: Vector,
+    /// Where it is.
+    pub point: Vector,
+    /// The impulse on the first body.
+    pub impulse: Vector,
+    /// The centre of the first body from that of the second.
+    pub apart: Vector,
+    /// Its velocity relative to that, before.
+    pub velocity: Vector,
+    /// The normal speeds of the points of contact, towards each other before, and from each other after.
+    pub speeds: [f64; 2],
+}
+
+/// The end of an encounter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// The bodies then.
+    pub states: [PairState; 2],
+    /// The time since the beginning.
+    pub time: f64,
+    /// Number of contacts.
+    pub contacts: u64,
+    /// The reason.
+    pub ending: Ending,
+    /// Number of times at which the bodies were looked at.
+    pub steps: u64,
+}
+
+/// Why an encounter cannot be followed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Trouble {
+    /// The search does not converge.
+    Unconverged,
+    /// A law of one's own failed.
+    Fault(Fault),
+}
+
+/// The encounter of two bodies, of which the second may be a plane; `chance` gives a uniform number in (0, 1) for a contact where ε_n scatters, and
+/// `hit` receives each contact. In coherent units, those of the law.
+///
+/// # Errors
+/// [`Trouble`].
+pub fn encounter(
+    bodies: [&Partner; 2],
+    law: &Law<'_>,
+    states: [PairState; 2],
+    chance: impl Fn(u64) -> f64,
+    hit: impl FnMut(&Hit),
+) -> Result<Outcome, Trouble> {
+    let mut clear = vec![0.0; bodies[0].pieces.len() * bodies[1].pieces.len()];
+    Level::best().run(Following {
+        bodies,
+        law,
+        states,
+        chance,
+        hit,
+        clear: &mut clear,
+    })
+}
+
+/// The width of the narrowest gap between two bodies, negative if they overlap.
+pub fn narrowest(bodies: [&Partner; 2], states: &[PairState; 2]) -> f64 {
+    let search = PairSearch {
+        pieces: bodies.map(|body| &body.pieces[..]),
+        size: bodies[0].reach + bodies[1].reach,
+    };
+    let turning = std::array::from_fn(|i| Turning::new(bodies[i], &states[i]));
+    let apart = states[0].position - states[1].position;
+    search.narrowest(&mut flight(bodies, apart, Vector::default(), &turning))
+}
+
+/// An encounter, compiled for each SIMD level.
+pub(super) struct Following<'a, 'b, C, H> {
+    pub bodies: [&'a Partner; 2],
+    pub law: &'a Law<'b>,
+    pub states: [PairState; 2],
+    pub chance: C,
+    pub hit: H,
+    /// Room for a time of each two parts.
+    pub clear: &'a mut [f64],
+}
+
+impl<C: Fn(u64) -> f64, H: FnMut(&Hit)> WithSimd for Following<'_, '_, C, H> {
+    type Output = Result<Outcome, Trouble>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        self.follow()
+    }
+}
+
+/// A body in flight: attitude of the principal axes, and ω in them.
+#[derive(Clone, Copy)]
+struct Turning {
+    attitude: Quaternion,
+    spin: Vector,
+}
+
+impl Turning {
+    #[inline(always)]
+    fn new(body: &Partner, state: &PairState) -> Self {
+        let attitude = state.attitude * body.axes;
+        let spin = attitude.inverse().rotate(state.spin);
+        Self { attitude, spin }
+    }
+}
+
+impl<C: Fn(u64) -> f64, H: FnMut(&Hit)> Following<'_, '_, C, H> {
+    #[inline(always)]
+    pub fn follow(mut self) -> Result<Outcome, Trouble> {
+        let bodies = self.bodies;
+        let reach = bodies[0].reach + bodies[1].reach;
+        let search = PairSearch {
+            pieces: bodies.map(|body| &body.pieces[..]),
+            size: reach,
+        };
+        let mut turning: [Turning; 2] =
+            std::array::from_fn(|i| Turning::new(bodies[i], &self.states[i]));
+        let mut velocities = self.states.map(|state| state.velocity);
+        let mut places = self.states.map(|state| state.position);
+        let (mut departure, mut unresolved) = (None, 0);
+        let (mut clock, mut contacts, mut steps) = (0.0, 0, 0);
+        let ending = loop {
+            let (apart, velocity) = (places[0] - places[1], velocities[0] - velocities[1]);
+            let (enters, leaves) = self.within(apart, velocity, reach);
+            let mut flight = flight(bodies, apart, velocity, &turning);
+            if contacts == 0 && leaves <= 0.0 {
+                break Ending::Missed;
+            }
+            let rests = |left: &PairDeparture, flight: &mut PairFlight| {
+                let poses = poses(flight, 0.0);
+                let gap = search.gap(flight, left.parts, 0.0, &poses);
+                let tops = [&bodies[0].top, &bodies[1].top];
+                left.speed <= 0.0 && search.acceleration(tops, &gap, left.parts, &poses) <= 0.0
+            };
+            if departure
+                .as_ref()
+                .is_some_and(|left| rests(left, &mut flight))
+            {
+                break Ending::Collapse;
+            }
+            let found = search.first(
+                &mut flight,
+                departure,
+                [enters, leaves],
+                self.clear,
+                &mut steps,
+            );
+            let found = found.map_err(|()| Trouble::Unconverged)?;
+            let time = found.map_or(if leaves < f64::INFINITY { leaves } else { 0.0 }, |touch| {
+                touch.time
+            });
+            clock += time;
+            for i in 0..2 {
+                places[i] = velocities[i].mul_add(time, places[i]);
+                let Turning { attitude, spin } = turning[i];
+                if !bodies[i].is_plane() {
+                    let (attitude, spin) = Rotation::new(bodies[i].top, attitude, spin).at(time);
+                    turning[i] = Turning { attitude, spin };
+                }
+            }
+            let Some(touch) = found else {
+                break if contacts == 0 {
+                    Ending::Missed
+                } else {
+                    Ending::Parted
+                };
+            };
+            let speed = self.collide(
+                clock,
+                contacts,
+                &touch,
+                &places,
+                &mut velocities,
+                &mut turning,
+            )?;
+            let parts = touch.parts;
+            departure = Some(PairDeparture { parts, speed });
+            contacts += 1;
+            unresolved = if touch.size < UNRESOLVED * reach && contacts > 1 {
+                unresolved + 1
+            } else {
+                0
+            };
+            if unresolved == COLLAPSE_RUN {
+                break Ending::Collapse;
+            }
+        };
+        let states = std::array::from_fn(|i| {
+            let Turning { attitude, spin } = turning[i];
+            PairState {
+                position: places[i],
+                velocity: velocities[i],
+                attitude: attitude * bodies[i].axes.inverse(),
+                spin: attitude.rotate(spin),
+            }
+        });
+        Ok(Outcome {
+            states,
+            time: clock,
+            contacts,
+            ending,
+            steps,
+        })
+    }
+
+    /// The times between which the bodies can touch.
+    #[inline(always)]
+    fn within(&self, apart: Vector, velocity: Vector, reach: f64) -> (f64, f64) {
+        if self.bodies[1].is_plane() {
+            let time = (reach - apart.z) / velocity.z;
+            return if velocity.z > 0.0 {
+                (0.0, time)
+            } else if velocity.z < 0.0 {
+                (time.max(0.0), f64::INFINITY)
+            } else if apart.z > reach {
+                (0.0, 0.0)
+            } else {
+                (0.0, f64::INFINITY)
+            };
+        }
+        let (square, along) = (velocity.dot(velocity), apart.dot(velocity));
+        let beyond = apart.dot(apart) - reach * reach;
+        let across = apart.cross(velocity);
+        let chord = square * (reach * reach) - across.dot(across);
+        if square == 0.0 {
+            let leaves = if beyond > 0.0 { 0.0 } else { f64::INFINITY };
+            return (0.0, leaves);
+        }
+        if chord <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let root = chord.sqrt();
+        let leaves = if along > 0.0 {
+            -beyond / (along + root)
+        } else {
+            (root - along) / square
+        };
+        let enters = if along < 0.0 {
+            beyond / (root - along)
+        } else {
+            0.0
+        };
+        (enters.max(0.0), leaves.max(0.0))
+    }
+
+    /// The impact of a contact; returns the speed at which its points leave each other.
+    #[inline(always)]
+    fn collide(
+        &mut self,
+        time: f64,
+        number: u64,
+        touch: &PairTouch,
+        places: &[Vector; 2],
+        velocities: &mut [Vector; 2],
+        turning: &mut [Turning; 2],
+    ) -> Result<f64, Trouble> {
+        let bodies = self.bodies;
+        let apart = places[0] - places[1];
+        let velocity = velocities[0] - velocities[1];
+        let centre = |i: usize| match &bodies[i].pieces[touch.parts[i]] {
+            Piece::Ball(ball) => (turning[i].attitude.rotate(ball.place), ball.radius),
+            Piece::Plane => (Vector::default(), 0.0),
+        };
+        let ((one, radius), (two, _)) = (centre(0), centre(1));
+        let normal = if bodies[1].is_plane() {
+            Vector::new(0.0, 0.0, 1.0)
+        } else {
+            let between = apart + one - two;
+            between / between.norm()
+        };
+        // One point for both, so that the angular momentum stays what it is.
+        let first = one - normal * radius;
+        let arms = [first, first + apart];
+        let frame = frame(normal);
+        let back = frame.inverse();
+        let [k1, k2] = [0, 1].map(|i| {
+            let inverse = Symmetric::turned(bodies[i].inverse_moments, back * turning[i].attitude);
+            Compliance::of_body(1.0 / bodies[i].inverse_mass, &inverse, back.rotate(arms[i]))
+        });
+        let own = [0, 1].map(|i| turning[i].attitude.rotate(turning[i].spin).cross(arms[i]));
+        let met = back.rotate(velocity + own[0] - own[1]); // (7)
+        let compliance = k1 + k2;
+        let answer = if self.law.deviation > 0.0 {
+            self.law
+                .answer_drawn(&compliance, met, (self.chance)(number))
+        } else {
+            self.law.answer(&compliance, met)
+        };
+        let answer = answer.map_err(Trouble::Fault)?;
+        let impulse = frame.rotate(answer.impulse);
+        (self.hit)(&Hit {
+            time,
+            normal,
+            point: places[0] + first,
+            impulse,
+            apart,
+            velocity,
+            speeds: [-met.z, answer.separation_speed],
+        });
+        for (i, sign) in [(0, 1.0), (1, -1.0)] {
+            velocities[i] = impulse.mul_add(sign * bodies[i].inverse_mass, velocities[i]);
+            let torque = turning[i].attitude.inverse().rotate(arms[i].cross(impulse));
+            let [x, y, z] = bodies[i].inverse_moments;
+            let change = Vector::new(x * torque.x, y * torque.y, z * torque.z); // (11)
+            turning[i].spin = change.mul_add(sign, turning[i].spin);
+        }
+        Ok(answer.separation_speed)
+    }
+}
+
+#[inline(always)]
+fn flight(
+    bodies: [&Partner; 2],
+    apart: Vector,
+    velocity: Vector,
+    turning: &[Turning; 2],
+) -> PairFlight {
+    let [one, two] = [0, 1].map(|i| {
+        let (body, Turning { attitude, spin }) = (bodies[i], turning[i]);
+        Turn::new(&body.top, body.axis, attitude, spin)
+    });
+    PairFlight {
+        apart,
+        velocity,
+        turns: [one.0, two.0],
+        bounds: [one.1, two.1],
+    }
+}
+
+/// A rotation that takes the z axis to a unit vector.
+#[inline(always)]
+fn frame(normal: Vector) -> Quaternion {
+    let Vector { x, y, z } = normal;
+    if z < -0.5 {
+        // Half a turn about the x axis first.
+        return Quaternion::new(1.0 - z, y, -x, 0.0).normalized()
+            * Quaternion::new(0.0, 1.0, 0.0, 0.0);
+    }
+    Quaternion::new(1.0 + z, -y, x, 0.0).normalized()
+}

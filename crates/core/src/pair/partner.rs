@@ -1,0 +1,125 @@
+//! A body as encounters see it.
+
+use super::PairState;
+use crate::Error;
+use crate::math::{Quaternion, Vector};
+use crate::shape::{AnyBody, Piece, Top};
+
+/// A body of an encounter, or a plane at rest, the body of infinite mass. Units are coherent, such as SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Partner {
+    pub(crate) inverse_mass: f64,
+    pub(crate) top: Top,
+    /// The reciprocals of the principal moments.
+    pub(crate) inverse_moments: [f64; 3],
+    /// The largest distance of a part from the centre of mass; 0 of a plane.
+    pub(crate) reach: f64,
+    /// The rotation from the principal axes to those that the body was given in.
+    pub(crate) axes: Quaternion,
+    pub(crate) pieces: Vec<Piece>,
+    /// The principal axis on which the centres of all parts are, if it precesses.
+    pub(crate) axis: Option<usize>,
+}
+
+impl Partner {
+    /// A body in SI units; `name` is that of its parameter.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a body whose surface is not known part by part.
+    pub fn new(name: &'static str, body: AnyBody<'_>) -> Result<Self, Error> {
+        let (moments, axes) = match body {
+            AnyBody::Revolution(solid) => {
+                let (across, along) = (solid.transverse_inertia, solid.axial_inertia);
+                ([across, across, along], Quaternion::IDENTITY)
+            }
+            AnyBody::Rigid(rigid) => (rigid.principal_moments(), rigid.axes),
+        };
+        let top = Top::new(moments)?;
+        let pieces = body.pieces(name)?;
+        let on = |axis: usize| {
+            let off = |piece: &Piece| {
+                let Piece::Ball(ball) = piece else {
+                    return true;
+                };
+                let place = ball.place.parts();
+                place[(axis + 1) % 3] != 0.0 || place[(axis + 2) % 3] != 0.0
+            };
+            top.precesses(axis) && !pieces.iter().any(off)
+        };
+        let reach = |piece: &Piece| match piece {
+            Piece::Ball(ball) => ball.reach + ball.radius,
+            Piece::Plane => 0.0,
+        };
+        Ok(Self {
+            inverse_mass: 1.0 / body.mass(),
+            inverse_moments: top.moments().map(|moment| 1.0 / moment),
+            reach: pieces.iter().map(reach).fold(0.0, f64::max),
+            axis: (0..3).rev().find(|&axis| on(axis)),
+            top,
+            axes,
+            pieces,
+        })
+    }
+
+    /// The plane z = 0, below a body.
+    pub fn plane() -> Self {
+        Self {
+            inverse_mass: 0.0,
+            top: Top::new([1.0; 3]).expect("equal moments"),
+            inverse_moments: [0.0; 3],
+            reach: 0.0,
+            axes: Quaternion::IDENTITY,
+            pieces: vec![Piece::Plane],
+            axis: None,
+        }
+    }
+
+    /// True for a plane.
+    pub fn is_plane(&self) -> bool {
+        self.inverse_mass == 0.0
+    }
+
+    /// Mass; infinite of a plane.
+    pub fn mass(&self) -> f64 {
+        1.0 / self.inverse_mass
+    }
+
+    /// The principal moments of inertia.
+    pub fn moments(&self) -> [f64; 3] {
+        self.top.moments()
+    }
+
+    /// The largest distance of a part from the centre of mass; 0 of a plane.
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// A body after a time of free flight.
+    pub fn later(&self, state: &PairState, time: f64) -> PairState {
+        let (attitude, spin) = self
+            .top
+            .turned(state.attitude * self.axes, state.spin, time);
+        PairState {
+            position: state.velocity.mul_add(time, state.position),
+            attitude: attitude * self.axes.inverse(),
+            spin,
+            ..*state
+        }
+    }
+
+    /// The angular momentum about the centre of mass, in the axes of space.
+    pub fn angular_momentum(&self, state: &PairState) -> Vector {
+        let principal = state.attitude * self.axes;
+        self.top
+            .momentum(principal, principal.inverse().rotate(state.spin))
+    }
+
+    /// The kinetic energy of the rotation with ω in the axes of space.
+    pub fn rotational_energy(&self, attitude: Quaternion, spin: Vector) -> f64 {
+        if self.is_plane() {
+            return 0.0;
+        }
+        let principal = attitude * self.axes;
+        0.5 * self.top.twice_energy(principal.inverse().rotate(spin))
+    }
+}

@@ -1,0 +1,242 @@
+//! Pairs of a gas: two Maxwellians, and the flux of pairs through the sphere that both bodies reach.
+//!
+//! With **u** the velocity of the first body relative to the second, of variance s = T₁/m₁ + T₂/m₂ in each direction, pairs come through the
+//! sphere of radius S, the sum of the reaches, at the rate πS²⟨u⟩ = πS²√(8s/π) for unit density. u²/2s of them has the density x e⁻ˣ, the direction is
+//! isotropic, and the impact parameter uniform on the disc. On a plane they come with the flux √(T/2πm), and v_n²m/2T has the density e⁻ˣ.
+
+use super::{PairState, Partner};
+use crate::Error;
+use crate::math::{Quaternion, Vector};
+use crate::random::of_encounter;
+use crate::simd::elementary::{ln, sincos};
+use std::f64::consts::{PI, TAU};
+
+/// The velocities with which two bodies meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Meeting {
+    /// Those of Maxwellians with these temperatures, in units of energy.
+    Temperatures([f64; 2]),
+    /// This relative speed, with the centre of mass at rest.
+    Speed(f64),
+}
+
+/// Encounters that are drawn at random, in SI units.
+#[derive(Debug, Clone)]
+pub struct Encounters<'a> {
+    /// The bodies, of which the second may be a plane.
+    pub bodies: [&'a Partner; 2],
+    /// Number of encounters.
+    pub count: usize,
+    /// How they meet.
+    pub meeting: Meeting,
+    /// The distance between the lines on which the centres of mass approach, if it is given.
+    pub impact_parameter: Option<f64>,
+    /// The temperatures of rotation, in units of energy.
+    pub rotational: [f64; 2],
+    /// ω of both bodies in the axes of space, if it is given.
+    pub spin: Option<[Vector; 2]>,
+    /// The seed.
+    pub seed: u64,
+}
+
+impl Encounters<'_> {
+    fn reach(&self) -> f64 {
+        self.bodies[0].reach + self.bodies[1].reach
+    }
+
+    /// Refuses what cannot be drawn.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`].
+    pub fn check(&self) -> Result<(), Error> {
+        let finite = |x: f64| x.is_finite() && x >= 0.0;
+        let warm = "finite and >= 0 (J)";
+        match self.meeting {
+            Meeting::Temperatures(both) => {
+                for value in both {
+                    Error::unless(finite(value), "translational_temperature", value, warm)?;
+                }
+                let moves = self.variance() > 0.0;
+                let allowed = "> 0 for one of the bodies, or nothing meets (J)";
+                Error::unless(moves, "translational_temperature", both[0], allowed)?;
+            }
+            Meeting::Speed(speed) => {
+                let allowed = "finite and > 0 (m/s)";
+                Error::unless(finite(speed) && speed > 0.0, "speed", speed, allowed)?;
+            }
+        }
+        for value in self.rotational {
+            Error::unless(finite(value), "rotational_temperature", value, warm)?;
+        }
+        if let Some(b) = self.impact_parameter {
+            let allowed = "given with another body, in [0, the sum of the reaches of both] (m)";
+            let holds = b >= 0.0 && b <= self.reach() && !self.bodies[1].is_plane();
+            Error::unless(holds, "impact_parameter", b, allowed)?;
+        }
+        for spin in self.spin.iter().flatten() {
+            let size = spin.norm();
+            Error::unless(size.is_finite(), "spin", size, "finite (rad/s)")?;
+        }
+        Ok(())
+    }
+
+    /// The variance of each component of the relative velocity.
+    fn variance(&self) -> f64 {
+        let Meeting::Temperatures([one, two]) = self.meeting else {
+            return 0.0;
+        };
+        one * self.bodies[0].inverse_mass + two * self.bodies[1].inverse_mass
+    }
+
+    /// The rate at which pairs enter the sphere of the sum of the reaches at unit density, in m³/s; on a plane that per area, in m/s.
+    pub fn attempt_rate(&self) -> f64 {
+        let reach = self.reach();
+        let area = PI * reach * reach;
+        match (self.meeting, self.bodies[1].is_plane()) {
+            (Meeting::Temperatures(_), false) => area * (8.0 * self.variance() / PI).sqrt(),
+            (Meeting::Temperatures(_), true) => (self.variance() / TAU).sqrt(),
+            (Meeting::Speed(speed), false) => area * speed,
+            (Meeting::Speed(speed), true) => speed,
+        }
+    }
+
+    /// The bodies of an encounter, where they come through the sphere.
+    #[inline(always)]
+    pub(super) fn draw(&self, number: u64) -> [PairState; 2] {
+        let mut draws = Draws {
+            seed: self.seed,
+            number,
+            draw: 0,
+        };
+        let (places, velocities) = if self.bodies[1].is_plane() {
+            self.onto_plane(&mut draws)
+        } else {
+            self.in_space(&mut draws)
+        };
+        std::array::from_fn(|i| {
+            let body = self.bodies[i];
+            if body.is_plane() {
+                return PairState {
+                    position: places[i],
+                    velocity: velocities[i],
+                    attitude: Quaternion::IDENTITY,
+                    spin: Vector::default(),
+                };
+            }
+            let attitude = draws.attitude();
+            let [a, b, c] = body.inverse_moments;
+            let spin = match self.spin {
+                Some(given) => given[i],
+                None => {
+                    let [x, y, z] = draws.normals();
+                    let part = |w: f64, inverse: f64| w * (self.rotational[i] * inverse).sqrt();
+                    (attitude * body.axes).rotate(Vector::new(part(x, a), part(y, b), part(z, c)))
+                }
+            };
+            PairState {
+                position: places[i],
+                velocity: velocities[i],
+                attitude,
+                spin,
+            }
+        })
+    }
+
+    /// Places and velocities of two bodies; their centre of mass is at the origin.
+    #[inline(always)]
+    fn in_space(&self, draws: &mut Draws) -> ([Vector; 2], [Vector; 2]) {
+        let [one, two] = [0, 1].map(|i| self.bodies[i].inverse_mass);
+        let reach = self.reach();
+        let (height, azimuth) = draws.pair();
+        let level = (1.0 - (2.0 * height - 1.0) * (2.0 * height - 1.0))
+            .max(0.0)
+            .sqrt();
+        let (sine, cosine) = sincos(TAU * azimuth);
+        let u = Vector::new(level * cosine, level * sine, 2.0 * height - 1.0);
+        let (square, around) = draws.pair();
+        let b = match self.impact_parameter {
+            Some(b) => b / reach,
+            None => square.sqrt(),
+        };
+        // Two directions across u.
+        let first = Vector::new(-sine, cosine, 0.0);
+        let second = u.cross(first);
+        let (s, c) = sincos(TAU * around);
+        let back = (1.0 - b * b).max(0.0).sqrt();
+        let apart = (first * (b * c) + second * (b * s) - u * back) * reach;
+        let (speed, drift) = match self.meeting {
+            Meeting::Speed(speed) => (speed, Vector::default()),
+            Meeting::Temperatures(temperatures) => {
+                let (a, b) = draws.pair();
+                let speed = (-2.0 * self.variance() * ln((1.0 - a) * (1.0 - b))).sqrt();
+                let [s1, s2] = [temperatures[0] * one, temperatures[1] * two];
+                let [x, y, z] = draws.normals();
+                (speed, Vector::new(x, y, z) * (s1 * s2 / (s1 + s2)).sqrt())
+            }
+        };
+        // With weights that make the rest independent of u.
+        let [w1, w2] = match self.meeting {
+            Meeting::Speed(_) => [one / (one + two), two / (one + two)],
+            Meeting::Temperatures([t1, t2]) => {
+                let whole = t1 * one + t2 * two;
+                [t1 * one / whole, t2 * two / whole]
+            }
+        };
+        let places = [apart * (one / (one + two)), apart * (-two / (one + two))];
+        let velocities = [u.mul_add(speed * w1, drift), u.mul_add(-speed * w2, drift)];
+        (places, velocities)
+    }
+
+    /// Those of a body over a plane.
+    #[inline(always)]
+    fn onto_plane(&self, draws: &mut Draws) -> ([Vector; 2], [Vector; 2]) {
+        let velocity = match self.meeting {
+            Meeting::Speed(speed) => Vector::new(0.0, 0.0, -speed),
+            Meeting::Temperatures(_) => {
+                let variance = self.variance();
+                let (a, _) = draws.pair();
+                let [x, y, _] = draws.normals();
+                let part = variance.sqrt();
+                Vector::new(part * x, part * y, -(-2.0 * variance * ln(1.0 - a)).sqrt())
+            }
+        };
+        let none = Vector::default();
+        (
+            [Vector::new(0.0, 0.0, self.reach()), none],
+            [velocity, none],
+        )
+    }
+}
+
+/// The random numbers of an encounter.
+struct Draws {
+    seed: u64,
+    number: u64,
+    draw: u32,
+}
+
+impl Draws {
+    #[inline(always)]
+    fn pair(&mut self) -> (f64, f64) {
+        self.draw += 1;
+        of_encounter(self.seed, self.number, self.draw - 1)
+    }
+
+    /// Three normal numbers, by G. E. P. Box and M. E. Muller (1958).
+    #[inline(always)]
+    fn normals(&mut self) -> [f64; 3] {
+        let ((a, b), (c, d)) = (self.pair(), self.pair());
+        let ((s, t), (u, _)) = (sincos(TAU * b), sincos(TAU * d));
+        let [p, q] = [a, c].map(|x| (-2.0 * ln(1.0 - x)).sqrt());
+        [p * s, p * t, q * u]
+    }
+
+    /// An attitude, uniform on SO(3): K. Shoemake, *Uniform random rotations*, Graphics Gems III (1992).
+    #[inline(always)]
+    fn attitude(&mut self) -> Quaternion {
+        let ((a, b), (c, _)) = (self.pair(), self.pair());
+        let ((s, t), (u, v)) = (sincos(TAU * b), sincos(TAU * c));
+        let (p, q) = ((1.0 - a).sqrt(), a.sqrt());
+        Quaternion::new(p * s, p * t, q * u, q * v).normalized()
+    }
+}

@@ -1,0 +1,249 @@
+//! Encounters of two bodies in free flight.
+
+use restitution_core::pair::{
+    Encounters, Ending, Hit, Meeting, PairState, Partner, Table, encounter,
+};
+use restitution_core::{
+    AnyBody, Dumbbell, Frictionless, Law, Level, Matter, Monitor, Quaternion, Resources, Rigid,
+    RigidBall, TangentialRestitution, Vector,
+};
+
+/// Of mass 1 and R = 1.
+fn dumbbell(separation: f64) -> Partner {
+    use restitution_core::Shape;
+    let mass = Dumbbell::new(1.0, separation, 1.0).unwrap().mass();
+    let body = Dumbbell::new(1.0, separation, 1.0 / mass).unwrap();
+    Partner::new("body", AnyBody::from(body)).unwrap()
+}
+
+/// Four balls, without any symmetry.
+fn clump() -> Partner {
+    let ball = |&[x, y, z, radius]: &[f64; 4]| RigidBall {
+        centre: Vector::new(x, y, z),
+        radius,
+    };
+    let balls: Vec<_> = [
+        [0.6, 0.6, 0.6, 0.8],
+        [0.6, -0.6, -0.6, 0.8],
+        [-0.6, 0.6, -0.6, 0.7],
+        [-0.6, -0.6, 0.6, 0.5],
+    ]
+    .iter()
+    .map(ball)
+    .collect();
+    let body = Rigid::clump(&balls, 0.1, Matter::Sum).unwrap();
+    Partner::new("body", AnyBody::from(&body)).unwrap()
+}
+
+fn frictionless(normal: f64) -> Law<'static> {
+    Law::new(normal, Frictionless).unwrap()
+}
+
+fn drawn<'a>(bodies: [&'a Partner; 2], count: usize) -> Encounters<'a> {
+    Encounters {
+        bodies,
+        count,
+        meeting: Meeting::Temperatures([1.0, 0.5]),
+        impact_parameter: None,
+        rotational: [1.0, 2.0],
+        spin: None,
+        seed: 5,
+    }
+}
+
+fn record(run: &Encounters<'_>, law: &Law<'_>, threads: usize, level: Level) -> Table {
+    let resources = Resources { threads, level };
+    run.record(law, None, true, resources, &Monitor::default())
+        .unwrap()
+}
+
+/// The states before an encounter, as they were recorded.
+fn before(row: &[f64]) -> [PairState; 2] {
+    let vector = |at: usize| Vector::new(row[at], row[at + 1], row[at + 2]);
+    [0, 1].map(|i| PairState {
+        velocity: vector(18 + 3 * i),
+        spin: vector(30 + 3 * i),
+        position: vector(42 + 3 * i),
+        attitude: Quaternion::new(
+            row[54 + 4 * i],
+            row[55 + 4 * i],
+            row[56 + 4 * i],
+            row[57 + 4 * i],
+        ),
+    })
+}
+
+fn momenta(bodies: [&Partner; 2], states: &[PairState; 2]) -> [Vector; 2] {
+    let mut sums = [Vector::default(); 2];
+    for (body, state) in bodies.into_iter().zip(states) {
+        let momentum = state.velocity * body.mass();
+        sums[0] = sums[0] + momentum;
+        sums[1] = sums[1] + state.position.cross(momentum) + body.angular_momentum(state);
+    }
+    sums
+}
+
+fn energy(bodies: [&Partner; 2], states: &[PairState; 2]) -> f64 {
+    let of = |(body, state): (&Partner, &PairState)| {
+        0.5 * body.mass() * state.velocity.dot(state.velocity)
+            + body.rotational_energy(state.attitude, state.spin)
+    };
+    bodies.into_iter().zip(states).map(of).sum()
+}
+
+fn follow(
+    bodies: [&Partner; 2],
+    law: &Law<'_>,
+    states: [PairState; 2],
+) -> (restitution_core::pair::Outcome, Vec<Hit>) {
+    let mut hits = Vec::new();
+    let found = encounter(bodies, law, states, |_| 0.5, |hit| hits.push(*hit)).unwrap();
+    (found, hits)
+}
+
+/// Momentum and angular momentum stay, and without losses the energy does.
+#[test]
+fn an_encounter_keeps_what_it_must() {
+    let (one, two, three) = (dumbbell(1.0), dumbbell(0.3), clump());
+    let sticky = Law::new(0.7, TangentialRestitution::new(-0.3).unwrap()).unwrap();
+    for bodies in [[&one, &one], [&one, &two], [&three, &one], [&three, &three]] {
+        for (law, elastic) in [(frictionless(1.0), true), (sticky, false)] {
+            let run = drawn(bodies, 1000);
+            let table = record(&run, &law, 1, Level::best());
+            let mut touched = 0;
+            for row in table.encounters.chunks(table.encounters.len() / run.count) {
+                let states = before(row);
+                let (found, hits) = follow(bodies, &law, states);
+                assert_eq!(found.contacts as usize, hits.len());
+                assert_eq!(found.contacts as f64, row[0]);
+                touched += usize::from(found.contacts > 0);
+                let [was, is] = [&states, &found.states].map(|states| momenta(bodies, states));
+                for (was, is) in was.into_iter().zip(is) {
+                    assert!((was - is).norm() < 1e-12 * (1.0 + found.time) * (1.0 + was.norm()));
+                }
+                let [was, is] = [&states, &found.states].map(|states| energy(bodies, states));
+                assert!(!elastic || (is / was - 1.0).abs() < 1e-12);
+            }
+            assert!(touched > 500);
+        }
+    }
+}
+
+/// Two spheres meet where their distance is the sum of the radii, and a sphere without friction does not turn.
+#[test]
+fn spheres_follow_the_closed_form() {
+    let sphere = dumbbell(0.0);
+    let run = drawn([&sphere; 2], 1000);
+    let law = frictionless(0.6);
+    let table = record(&run, &law, 1, Level::best());
+    for row in table.encounters.chunks(table.encounters.len() / run.count) {
+        let states = before(row);
+        let (found, hits) = follow([&sphere; 2], &law, states);
+        let [hit] = hits[..] else { panic!("{hits:?}") };
+        let apart = states[0].position - states[1].position;
+        let u = states[0].velocity - states[1].velocity;
+        let n = apart / apart.norm();
+        assert!((hit.normal - n).norm() < 1e-12);
+        let later = u - n * (1.6 * u.dot(n));
+        let got = found.states[0].velocity - found.states[1].velocity;
+        assert!((got - later).norm() < 1e-12 * u.norm());
+        for (state, was) in found.states.iter().zip(&states) {
+            assert!((state.spin - was.spin).norm() < 1e-14 * was.spin.norm());
+        }
+    }
+}
+
+/// With ε = 1 every encounter runs backwards from its end to its beginning.
+#[test]
+fn time_can_run_backwards() {
+    let (one, three) = (dumbbell(1.0), clump());
+    let law = frictionless(1.0);
+    let mut several = 0;
+    for bodies in [[&one, &one], [&three, &one]] {
+        let run = drawn(bodies, 2000);
+        let table = record(&run, &law, 1, Level::best());
+        for row in table.encounters.chunks(table.encounters.len() / run.count) {
+            let states = before(row);
+            let (there, _) = follow(bodies, &law, states);
+            if there.contacts == 0 || there.ending == Ending::Collapse {
+                continue;
+            }
+            several += i32::from(there.contacts > 1);
+            let turned = there.states.map(|state| PairState {
+                velocity: state.velocity * -1.0,
+                spin: state.spin * -1.0,
+                ..state
+            });
+            let (back, _) = follow(bodies, &law, turned);
+            assert_eq!(back.contacts, there.contacts);
+            let error = [0, 1].map(|i| {
+                (back.states[i].velocity + states[i].velocity).norm()
+                    + (back.states[i].position - states[i].position).norm()
+            });
+            // A grazing contact multiplies rounding errors by its reciprocal speed.
+            assert!(error[0] + error[1] < 1e-7, "{error:?}");
+        }
+    }
+    assert!(several > 50);
+}
+
+/// Gaps that are sampled densely, along the exact rotation, are never negative before a contact, and are 0 there.
+#[test]
+fn nothing_touches_before_the_first_contact() {
+    let (one, three) = (dumbbell(2.0), clump());
+    let law = frictionless(0.9);
+    for bodies in [[&one, &one], [&three, &three]] {
+        let run = drawn(bodies, 300);
+        let table = record(&run, &law, 1, Level::best());
+        for row in table.encounters.chunks(table.encounters.len() / run.count) {
+            let states = before(row);
+            let (found, hits) = follow(bodies, &law, states);
+            let end = hits.first().map_or(found.time, |hit| hit.time);
+            for k in 0..=200 {
+                let time = end * f64::from(k) / 200.0;
+                let later: [PairState; 2] =
+                    std::array::from_fn(|i| bodies[i].later(&states[i], time));
+                let width = restitution_core::pair::narrowest(bodies, &later);
+                assert!(width > -1e-12, "{width} at {time} of {end}");
+                assert!(k < 200 || hits.is_empty() || width < 1e-12);
+            }
+        }
+    }
+}
+
+/// Neither threads nor vectors show.
+#[test]
+fn any_number_of_threads_gives_the_same_encounters() {
+    let (one, three) = (dumbbell(1.0), clump());
+    let run = drawn([&three, &one], 1500);
+    let law = frictionless(0.8);
+    let first = record(&run, &law, 1, Level::Scalar);
+    for (threads, level) in Level::available().enumerate() {
+        let again = record(&run, &law, threads + 1, level);
+        let bits = |table: &Table| -> Vec<u64> {
+            table
+                .encounters
+                .iter()
+                .chain(&table.hits)
+                .map(|x| x.to_bits())
+                .collect()
+        };
+        assert_eq!(bits(&first), bits(&again));
+    }
+}
+
+/// Of a body on a plane the impulse is that of the plane, and its attitude uniform: each falls on it once at least.
+#[test]
+fn a_plane_is_hit_by_everything() {
+    let (one, plane) = (dumbbell(1.0), Partner::plane());
+    let run = drawn([&one, &plane], 1000);
+    let table = record(&run, &frictionless(0.9), 1, Level::best());
+    for row in table.encounters.chunks(table.encounters.len() / run.count) {
+        assert!(row[0] >= 1.0);
+    }
+    for hit in table.hits.chunks(12) {
+        assert_eq!(hit[1..4], [0.0, 0.0, 1.0]);
+        assert!(hit[6].abs() < 1e-12 && hit[9] > 0.0);
+        assert!((hit[11] / hit[10] - 0.9).abs() < 1e-12);
+    }
+}

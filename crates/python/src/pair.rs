@@ -1,0 +1,119 @@
+//! Encounters of two bodies.
+
+use crate::bodies::Dropped;
+use crate::errors::python_error;
+use crate::laws::Law;
+use crate::{resources, watch};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+use restitution_core::pair::{
+    ENCOUNTER, Encounters, Ending, HIT, Meeting, PairState, PairVariable, Partner,
+};
+use restitution_core::{Quaternion, Vector};
+
+/// The pairs to draw: temperatures of translation, or a relative speed; impact parameter, temperatures of rotation or ω.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct Drawn {
+    encounters: usize,
+    translational_temperature: Option<[f64; 2]>,
+    speed: Option<f64>,
+    impact_parameter: Option<f64>,
+    rotational_temperature: [f64; 2],
+    spin: Option<[[f64; 3]; 2]>,
+    seed: u64,
+}
+
+impl Drawn {
+    fn of<'a>(&self, bodies: [&'a Partner; 2]) -> Encounters<'a> {
+        let vector = |[x, y, z]: [f64; 3]| Vector::new(x, y, z);
+        Encounters {
+            bodies,
+            count: self.encounters,
+            meeting: match (self.speed, self.translational_temperature) {
+                (Some(speed), _) => Meeting::Speed(speed),
+                (None, given) => Meeting::Temperatures(given.unwrap_or_default()),
+            },
+            impact_parameter: self.impact_parameter,
+            rotational: self.rotational_temperature,
+            spin: self.spin.map(|both| both.map(vector)),
+            seed: self.seed,
+        }
+    }
+}
+
+/// The body and the other one, or a plane if it is none.
+fn partners(body: &Dropped<'_>, other: Option<&Dropped<'_>>) -> PyResult<[Partner; 2]> {
+    let of = |name, body: &Dropped<'_>| Partner::new(name, body.body()).map_err(python_error);
+    let other = match other {
+        Some(other) => of("other", other)?,
+        None => Partner::plane(),
+    };
+    Ok([of("body", body)?, other])
+}
+
+type Rows<'py> = Bound<'py, PyArray2<f64>>;
+
+/// Follows encounters, drawn or given as rows of position, velocity, ω and attitude of each body. Returns rows of `PAIR_ENCOUNTER` and, if asked for, of
+/// `PAIR_HIT`, the rate of attempts, and the `KeyboardInterrupt` that cut the run short, if any.
+#[pyfunction]
+#[pyo3(signature = (body, other, law, drawn, states, contacts, threads, progress))]
+#[expect(clippy::too_many_arguments, reason = "one call from Python")]
+fn encounters<'py>(
+    py: Python<'py>,
+    body: Dropped<'py>,
+    other: Option<Dropped<'py>>,
+    law: &Law,
+    drawn: Drawn,
+    states: Option<PyReadonlyArray2<'py, f64>>,
+    contacts: bool,
+    threads: usize,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<(Rows<'py>, Rows<'py>, f64, Option<PyErr>)> {
+    let [one, two] = partners(&body, other.as_ref())?;
+    let run = drawn.of([&one, &two]);
+    let resources = resources(threads)?;
+    let given: Option<Vec<[PairState; 2]>> = match &states {
+        Some(rows) => Some(rows.as_slice()?.as_chunks().0.iter().map(state).collect()),
+        None => None,
+    };
+    let law = law.law();
+    let (table, interrupted) = watch::run(py, progress, |monitor| {
+        run.record(&law, given.as_deref(), contacts, resources, monitor)
+    })?;
+    let width = |all: &[PairVariable]| -> usize {
+        all.iter()
+            .map(|&(.., parts, each)| parts * (1 + usize::from(each)))
+            .sum()
+    };
+    let shaped = |values: Vec<f64>, width: usize| {
+        let rows = values.len() / width;
+        values.into_pyarray(py).reshape([rows, width])
+    };
+    Ok((
+        shaped(table.encounters, width(ENCOUNTER))?,
+        shaped(table.hits, width(HIT))?,
+        run.attempt_rate(),
+        interrupted,
+    ))
+}
+
+fn state(row: &[f64; 26]) -> [PairState; 2] {
+    let both = row.as_chunks::<13>().0;
+    [0, 1].map(|i| {
+        let [x, y, z, u, v, w, a, b, c, q, qx, qy, qz] = both[i];
+        PairState {
+            position: Vector::new(x, y, z),
+            velocity: Vector::new(u, v, w),
+            spin: Vector::new(a, b, c),
+            attitude: Quaternion::new(q, qx, qy, qz),
+        }
+    })
+}
+
+pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("PAIR_ENCOUNTER", ENCOUNTER.to_vec())?;
+    module.add("PAIR_HIT", HIT.to_vec())?;
+    module.add("PAIR_ENDINGS", Ending::NAMES)?;
+    module.add_function(wrap_pyfunction!(encounters, module)?)
+}
