@@ -1,4 +1,4 @@
-"""How many drops tell whether the shape or the material makes ε scatter.
+"""How many drops tell whether the surface or the material makes ε scatter.
 
 ``python -m benchmarks.shape_or_material`` prints the table of docs/inference.md, in some two minutes on one
 core. Balls of 6 mm with ε_n = 0.93 are dropped from 0.1 m, and 15 impacts of each drop are timed to 20 µs.
@@ -16,20 +16,32 @@ LAW = rs.Frictionless(normal=0.93)
 BALLS = (
     ("round, scatter 0.003", 0.0, 0.003),
     ("dumbbell, L/R = 0.05", 0.05, 0.0),
+    ("round, Ra = 0.74 µm", 0.0, 0.0),
 )
 DROPS = (1, 5)
 REPEATED = 4
-CAUSES = ("shape", "material", "both", "neither", "undecided")
+CAUSES = ("shape", "roughness", "surface", "material", "both", "neither", "undecided")
 
 
 def drops(elongation: float, scatter: float, number: int, seed: int) -> list[xr.Dataset]:
     """Drop the same ball several times."""
+    ball: rs.RoughSphere | rs.bodies.Body = rs.from_roundness(
+        DIAMETER, 0.25 * elongation * DIAMETER, form="dumbbell"
+    )
+    if elongation == scatter == 0.0:  # Ra is 2/e of the mean height
+        ball = rs.RoughSphere(
+            radius=DIAMETER / 2.0,
+            asperities=100_000,
+            asperity_radius=3e-6,
+            heights=("exponential", 1e-6),
+            seed=seed,
+        )
     run = rs.simulate(
-        rs.from_roundness(DIAMETER, 0.25 * elongation * DIAMETER, form="dumbbell"),
+        ball,
         rs.Frictionless(normal=rs.Scattered(normal=0.93, deviation=scatter)),
         particles=number,
         impacts=IMPACTS,
-        release_height=0.1 + DIAMETER / 2.0,
+        release_height=0.1 + DIAMETER / 2.0 + 2e-5,
         seed=seed,
     )
     times = run.time.values + np.random.default_rng(seed).normal(0.0, ERROR, run.time.shape)
@@ -49,7 +61,7 @@ def row(name: str, elongation: float, scatter: float, number: int) -> str:
 def main() -> None:
     """Print the table."""
     print(f"| ball | drops | {' | '.join(CAUSES)} |")
-    print("|---|---|---|---|---|---|---|")
+    print("|---" * (2 + len(CAUSES)) + "|")
     for ball in BALLS:
         for number in DROPS:
             print(row(*ball, number), flush=True)

@@ -25,7 +25,7 @@ def inferred(monkeypatch: pytest.MonkeyPatch, of_shape: Callable[[Any], Any]) ->
     data = rs.flight.restitution(run.time.values[0], 1e-5, drop_height=0.1)
     made: list[Table] = []
 
-    def known(_: Any, __: Any, elongations: Any, ___: Any, frictions: Any, *____: Any) -> Table:
+    def known(_: Any, __: Any, ___: Any, elongations: Any, ____: Any, frictions: Any, *rest: Any) -> Table:
         axes = (np.linspace(0.9, 0.96, 31), np.log(elongations), np.asarray(frictions, dtype=np.float64))
         normal, shape, friction = np.meshgrid(*axes, indexing="ij")
         values = -0.5 * ((normal - 0.93) / 0.01) ** 2 + of_shape(shape) - 2.0 * friction
@@ -39,6 +39,7 @@ def inferred(monkeypatch: pytest.MonkeyPatch, of_shape: Callable[[Any], Any]) ->
         diameter=6e-3,
         elongation=(0.03, 0.3),
         scatter=None,
+        roughness=0.0,
         friction=(0.1, 0.5),
         particles=100,
         draws=4000,

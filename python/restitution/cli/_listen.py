@@ -42,6 +42,9 @@ def listen(
     out_of_roundness: Annotated[
         float | None, typer.Option(metavar="T", help="Out-of-roundness of the ball, m, if it was measured.")
     ] = None,
+    roughness: Annotated[
+        float | None, typer.Option(metavar="RA", help="Roughness Ra of the ball, m, if it was measured.")
+    ] = None,
     wall: Annotated[
         float | None, typer.Option(metavar="W", help="Thickness of the wall of a hollow ball, m.")
     ] = None,
@@ -75,6 +78,7 @@ def listen(
                 gravity=gravity,
                 gravity_uncertainty=gravity_error,
                 out_of_roundness=out_of_roundness,
+                roughness=roughness,
                 wall=wall,
                 doubtful=doubtful,
             )

@@ -20,11 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from restitution.bodies import Body, Dumbbell, LoadedSphere, Spheroid
-from restitution.experiment.budget.experiment import Array, Experiment, mean_radius
-from restitution.laws import Coulomb, Frictionless, Law, TangentialRestitution
-
-_HOLDS = 0.1
-"""Coefficient of friction with which all contacts of a nearly round ball stick."""
+from restitution.experiment.budget.experiment import Array, Experiment, coupling
 
 
 @dataclass(frozen=True)
@@ -46,21 +42,6 @@ class NearRound:
     kick: Array
     bias: Array
     deviation: Array
-
-
-def coupling(law: Law, body: Body) -> float | None:
-    """Return q in 1/m², or None for laws for which it is not worked out here.
-
-    A contact at the lever arm d sticks where friction is above (d/R) m R²/(J + m R²).
-    """
-    match law:
-        case Frictionless():
-            return body.mass / body.transverse_inertia
-        case TangentialRestitution(tangential=1.0) | Coulomb():
-            if isinstance(law, Coulomb) and law.friction < _HOLDS:
-                return None
-            return body.mass / (body.transverse_inertia + body.mass * mean_radius(body) ** 2)
-    return None
 
 
 def near_round(experiment: Experiment, body: Body) -> NearRound | None:

@@ -11,20 +11,12 @@ has the mean ⟨ω²d²⟩/v². Contacts of different impacts are independent. A
 ball are pressed flat by an impact, and what is found here is the most that roughness can do.
 """
 
-import math
-
 import numpy as np
 
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.bodies import Body
-from restitution.experiment.budget._near_round import coupling
 from restitution.experiment.budget._sources import Source, nothing
-from restitution.experiment.budget.experiment import Experiment, mean_radius
-
-_HEIGHT = 0.5 * math.e
-"""h_0 over Ra."""
-_ROUGHEST = 1e-3
-"""Ra over the radius, up to which the expansion holds."""
+from restitution.experiment.budget.experiment import HEIGHT, ROUGHEST, Experiment, coupling, mean_radius
 
 
 def roughness(experiment: Experiment, body: Body) -> Source:
@@ -41,8 +33,8 @@ def roughness(experiment: Experiment, body: Body) -> Source:
     if rough == 0.0:
         return nothing(experiment.setting.impacts)
     radius = mean_radius(body)
-    if not rough <= _ROUGHEST * radius:
-        allowed = f"at most {_ROUGHEST:g} of the radius, {_ROUGHEST * radius:.6g} m"
+    if not rough <= ROUGHEST * radius:
+        allowed = f"at most {ROUGHEST:g} of the radius, {ROUGHEST * radius:.6g} m"
         raise ParameterError(wrong("roughness", rough, allowed))
     sources = []
     for known in experiment.laws:
@@ -50,7 +42,7 @@ def roughness(experiment: Experiment, body: Body) -> Source:
         if q is None:
             allowed = "0 but for Frictionless, tangential = 1, or Coulomb with friction >= 0.1"
             raise ParameterError(wrong("roughness", rough, allowed))
-        sources.append(_of_one(experiment, q, 2.0 * _HEIGHT * rough * radius))
+        sources.append(_of_one(experiment, q, 2.0 * HEIGHT * rough * radius))
     bias = np.mean([one.bias for one in sources], axis=0)
     second = np.mean([one.covariance + np.outer(one.bias, one.bias) for one in sources], axis=0)
     return Source(bias, second - np.outer(bias, bias))

@@ -23,7 +23,16 @@ from restitution.bodies import Body
 from restitution.experiment.flight.chain import COMMON, Measured, chain
 from restitution.experiment.flight.laws import LAWS, LawOfSpeed, by_parameters
 from restitution.experiment.flight.times import LARGEST
-from restitution.laws import Coulomb, Frictionless, Law, Material, Plastic, Viscoelastic, check_steady
+from restitution.laws import (
+    Coulomb,
+    Frictionless,
+    Law,
+    Material,
+    Plastic,
+    TangentialRestitution,
+    Viscoelastic,
+    check_steady,
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -65,6 +74,10 @@ def mean_radius(body: Body) -> float:
     return 0.25 * (up + down) + 0.5 * across
 
 
+HEIGHT = 0.5 * math.e
+"""Mean h_0 of heights that are exponentially distributed, over their arithmetic mean roughness Ra."""
+ROUGHEST = 1e-3
+"""Ra over the radius, up to which the expansion for rough balls holds."""
 STICKS = 0.3
 """A coefficient of friction with which contacts of nearly round balls stick, to L/R of about 0.5."""
 
@@ -83,6 +96,25 @@ def frictions(law: object) -> tuple[Law, ...]:
         raise ParameterError(wrong("law", law, allowed))
     with in_terms_of(normal=law):
         return Frictionless(normal=law), Coulomb(normal=law, friction=STICKS)
+
+
+_HOLDS = 0.1
+"""Coefficient of friction with which all contacts of a nearly round ball stick."""
+
+
+def coupling(law: Law, body: Body) -> float | None:
+    """Return q in 1/m², or None for laws for which it is not worked out here.
+
+    A contact at the lever arm d sticks where friction is above (d/R) m R²/(J + m R²).
+    """
+    match law:
+        case Frictionless():
+            return body.mass / body.transverse_inertia
+        case TangentialRestitution(tangential=1.0) | Coulomb():
+            if isinstance(law, Coulomb) and law.friction < _HOLDS:
+                return None
+            return body.mass / (body.transverse_inertia + body.mass * mean_radius(body) ** 2)
+    return None
 
 
 def law_of_speed(law: Law) -> LawOfSpeed:

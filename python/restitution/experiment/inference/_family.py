@@ -7,9 +7,9 @@ import numpy.typing as npt
 
 from restitution._internal.parameters import ParameterError, Problem
 from restitution.bodies import Body, Form, from_roundness
-from restitution.experiment.budget.experiment import law_of_speed
+from restitution.experiment.budget.experiment import STICKS, coupling, law_of_speed
 from restitution.experiment.flight.laws import LawOfSpeed
-from restitution.laws import Coulomb, Law, Plastic, Tabulated, Viscoelastic, check_steady
+from restitution.laws import Coulomb, Frictionless, Law, Plastic, Tabulated, Viscoelastic, check_steady
 
 Array = npt.NDArray[np.float64]
 
@@ -75,6 +75,14 @@ class Family:
             given = {name: getattr(normal, name) for name in type(normal).model_fields}
             return Viscoelastic(**given | {"dissipation": given["dissipation"] * parameter / normal.beta})
         return parameter
+
+    def coupling(self, friction: float | None) -> float | None:
+        """Return q of a round ball, as of `coupling`; its small asperities stick with any friction."""
+        law = self.law_of(self.inside(0.5), friction)
+        if isinstance(law, Coulomb):
+            rough = law.friction > 0.0
+            law = Coulomb(normal=law.normal, friction=STICKS) if rough else Frictionless(normal=law.normal)
+        return coupling(law, self.body(0.0))
 
     def check_friction(self, friction: tuple[float, float] | None) -> None:
         """Raise `ValueError` where friction is to be inferred and the law has none."""

@@ -13,11 +13,20 @@ from pydantic import Field
 
 from restitution import flight
 from restitution._internal.arrays import pair
-from restitution._internal.parameters import Number, ParameterError, Parameters, Whole, in_terms_of, wrong
+from restitution._internal.parameters import (
+    Allowed,
+    Number,
+    ParameterError,
+    Parameters,
+    Whole,
+    in_terms_of,
+    wrong,
+)
 from restitution.bodies import Form, Wall
-from restitution.experiment.budget.experiment import STICKS, frictions
+from restitution.experiment.budget.experiment import HEIGHT, STICKS, frictions
 from restitution.experiment.flight.series import series_of
 from restitution.experiment.inference._family import Family
+from restitution.experiment.inference._rough import PER_SHAPE, flights, over_heights
 from restitution.experiment.inference._series import NEEDED, Series, check_from_release
 from restitution.experiment.inference._table import Table, table
 from restitution.experiment.inference._verdict import disagreement, judge, sentence
@@ -38,8 +47,13 @@ _ROUNDEST = 1e-9
 """L/R below which no ball is: of a millimetre it is less than an atom."""
 _CHAINS = 4
 """Into which the draws, all independent, are divided, as other tools expect them."""
+_MEASURED = 0.3
+"""Standard deviation of ln of an out-of-roundness or Ra that was measured: of other places of the ball."""
 _MOST_RANGE = 1e6
 """Of L/R: the grid has points all the way."""
+
+
+_OR_NONE = Allowed("a finite number >= 0 (m), or None")
 
 
 class Setting(Parameters):
@@ -51,6 +65,8 @@ class Setting(Parameters):
     particles: Annotated[Whole, Field(ge=100)]
     draws: Annotated[Whole, Field(ge=100, le=10**8)]
     seed: Annotated[Whole, Field(ge=0, lt=2**32)]
+    out_of_roundness: Annotated[Number | None, Field(ge=0, description="m"), _OR_NONE] = None
+    roughness: Annotated[Number | None, Field(ge=0, description="m"), _OR_NONE] = None
 
 
 def posterior(
@@ -61,6 +77,8 @@ def posterior(
     form: Form = "dumbbell",
     lobes: int = 2,
     wall: float | None = None,
+    out_of_roundness: float | None = None,
+    roughness: float | None = None,
     elongation: tuple[float, float] | None = None,
     scatter: tuple[float, float] | None = (1e-6, 0.05),
     friction: tuple[float, float] | None = None,
@@ -73,8 +91,10 @@ def posterior(
     A ball is released from rest at any angle; how it turns is not measured. Its times are compared with
     those of simulated balls with the same errors, through four numbers: the parameter of ε_n by least
     squares, and how large the residuals are early and late. Their joint density is estimated from simulations
-    on a grid of L/R, scatter of ε_n and friction, and draws are taken from what is interpolated. Whether the
-    shape makes ε scatter, or the material, or both, is decided by the Bayes factors of these explanations.
+    on a grid of L/R, scatter of ε_n and friction, and draws are taken from what is interpolated.
+    Asperities of a round ball act through a lever arm as a shape does, and are simulated by the map of
+    docs/rough.md. Whether shape or asperities make ε scatter, or the material, or both, is decided by the
+    Bayes factors of these explanations.
 
     Parameters
     ----------
@@ -94,6 +114,12 @@ def posterior(
     wall : float, optional
         Thickness of the wall of a hollow ball, in m. A table-tennis ball that is taken for a full one has an
         L/R that is too small by a fifth.
+    out_of_roundness, roughness : float, optional
+        The out-of-roundness t and the arithmetic mean roughness Ra of the ball in m, where they were
+        measured, >= 0. Without the first L = 2t has the prior `elongation`; with it ln t is Gaussian about
+        ln of what was measured, with a deviation of 0.3. Impacts flatten asperities, which are rigid here:
+        ln of the Ra that acts is uniform up to what was measured, and falls with the same deviation beyond.
+        0 is a smooth ball.
     elongation : (float, float), optional
         Prior: ln(L/R) is uniform between these, 10⁻⁹ <= low < high < 10⁶ low, and the low end stands for a
         round ball. Without it from 10⁻³ to 0.3, or from as low as the times tell a ball from a round one.
@@ -116,17 +142,20 @@ def posterior(
     Returns
     -------
     xarray.DataTree
-        In ArviZ's schema, of independent draws: ``posterior`` with ``normal`` (or ``beta``,
-        ``yield_speed``), ``elongation`` (L/R),
-        ``out_of_roundness`` (m), ``scatter`` (of ε_n) and ``friction``, over chain and draw; ``sample_stats``
-        with ``lp``; ``observed_data``; ``likelihood`` with ``profile``, the log-likelihood as a function of
-        L/R, largest over the rest. The attributes hold the settings; ``explained_by``, what makes ε scatter:
-        'shape', 'material', 'both', 'neither' (errors of the times suffice) or 'undecided' (one of them, and
-        the times do not tell which); ``log_bayes_factor_shape`` and ``log_bayes_factor_scatter``, ln of the
-        factors for each against its absence; ``elongation_determined`` (1 or 0), ``elongation_upper_limit``
-        (95 %, for L/R uniform from 0); ``predictive_p_value``, the probability that the best ball scatters ε
-        as far from its usual as observed, or with as little growth towards low speeds, as large a residual,
-        or as much of a trend with the speed; and ``verdict``, a sentence, which says first if this is small.
+        In ArviZ's schema, of independent draws: ``posterior``, of balls with a shape, with ``normal`` (or
+        ``beta``, ``yield_speed``), ``elongation`` (L/R), ``out_of_roundness`` (m), ``scatter`` (of ε_n) and
+        ``friction``, over chain and draw; ``rough``, of round balls with asperities, the same with
+        ``roughness`` (Ra in m) in the place of the shape; ``sample_stats`` with ``lp``; ``observed_data``;
+        ``likelihood`` with ``profile``, the log-likelihood as a function of L/R, largest over the rest. The
+        attributes hold the settings; ``explained_by``, what makes ε scatter: 'shape', 'roughness', 'surface'
+        (one of these, and the times do not tell which), 'material', 'both' (surface and material), 'neither'
+        (errors of the times suffice) or 'undecided' (surface or material); ``log_bayes_factor_surface``,
+        ``_shape``, ``_roughness`` and ``_scatter``, ln of the factors for each against its absence;
+        ``elongation_determined`` (1 or 0), ``elongation_upper_limit`` (95 %, for L/R uniform from 0),
+        ``roughness_upper_limit`` (m, likewise); ``predictive_p_value``, the probability that the best ball
+        scatters ε as far from its usual as observed, or with as little growth towards low speeds, as large a
+        residual, or as much of a trend with the speed; and ``verdict``, a sentence, which says first if this
+        is small.
 
     Raises
     ------
@@ -150,7 +179,16 @@ def posterior(
     'undecided'
     """
     from_dict = _from_dict()
-    setting = Setting(diameter=diameter, lobes=lobes, wall=wall, particles=particles, draws=draws, seed=seed)
+    setting = Setting(
+        diameter=diameter,
+        lobes=lobes,
+        wall=wall,
+        particles=particles,
+        draws=draws,
+        seed=seed,
+        out_of_roundness=out_of_roundness,
+        roughness=roughness,
+    )
     given = frictions(_USUAL_NORMAL if law is None else law)
     law, unknown = given[-1], len(given) > 1
     low, high = _USUAL if elongation is None else _prior("elongation", elongation, least=_ROUNDEST)
@@ -159,6 +197,9 @@ def posterior(
     family = Family(law, setting.diameter, form, setting.lobes, setting.wall)
     family.check_friction(friction)
     hollow = {} if wall is None else {"wall": wall}
+    if out_of_roundness is not None:
+        of_it = 4.0 * out_of_roundness / diameter
+        high = max(high, 3.0 * of_it) if elongation is None else high
     with in_terms_of(elongation=(low, high), diameter=diameter, **hollow):
         family.body(high)
     coefficients: Sequence[float | None] = [None]
@@ -187,20 +228,69 @@ def posterior(
     if elongation is None:
         low = max(_resolved(series, family, coefficients[0], low, setting), 1.01 * high / _MOST_RANGE)
     nodes = np.geomspace(low, high, 1 + math.ceil(_SHAPES * math.log10(high / low)))
-    found = table(series, family, nodes, scatters, coefficients, setting.particles, setting.seed)
-    points, log = found.draws(setting.draws + -setting.draws % _CHAINS, np.random.default_rng(setting.seed))
-    chain, log = points.reshape(_CHAINS, -1, points.shape[1]), log.reshape(_CHAINS, -1)
+
+    def shaped(one: Series, parameter: float, x: float, mu: float | None, start: int) -> Array:
+        return one.simulated(family.body(x), family.law_of(parameter, mu), setting.particles, start)
+
+    smooth = table(series, family, shaped, nodes, scatters, coefficients, setting.particles, setting.seed)
+    found = smooth
+    if out_of_roundness is not None:
+        place = max(math.log(max(of_it, _ROUNDEST)), found.axes[1][0])
+        found = found.weighted(-0.5 * ((found.axes[1] - place) / _MEASURED) ** 2)
+    rough = _rough(series, family, nodes, scatters, coefficients, setting)
     return _tree(
         from_dict,
         family,
         setting,
-        found,
-        chain,
-        log,
+        (found, rough, smooth),
         series,
         scatters=scatter is not None,
         unknown=unknown and friction is None,
     )
+
+
+def _rough(
+    series: Sequence[Series],
+    family: Family,
+    nodes: Array,
+    scatters: Sequence[float | None],
+    frictions: Sequence[float | None],
+    setting: Setting,
+) -> Table | None:
+    """Return the likelihood over ln of the mean height of asperities that scatter ε as the shapes do.
+
+    None where the ball is known to be smooth, or the law is one of which no closed form is known.
+    """
+    couplings = [family.coupling(mu) for mu in frictions]
+    known = [q for q in couplings if q is not None]
+    if setting.roughness == 0.0 or len(known) < len(couplings):
+        return None
+    radius = 0.5 * setting.diameter
+    heights = PER_SHAPE * radius * nodes**2
+    # From k of the lowest asperities that hold to that of the highest that slide.
+    low, high = min(known) * radius * heights[0], max(known) * radius * heights[-1]
+    kicks = np.geomspace(low, high, 1 + math.ceil(0.5 * _SHAPES * math.log10(high / low)))
+
+    def bounced(one: Series, parameter: float, kick: float, _: float | None, start: int) -> Array:
+        return flights(
+            one.form,
+            parameter,
+            kick,
+            drop=one.drop,
+            gravity=one.gravity,
+            particles=setting.particles,
+            impacts=one.errors.size,
+            seed=start,
+        )
+
+    found = table(series, family, bounced, kicks, scatters, [None], setting.particles, setting.seed)
+    fine = np.geomspace(heights[0], heights[-1], found.axes[1].size)
+    given = [mu for mu in frictions if mu is not None]
+    found = over_heights(found, fine, [q * radius for q in known], given)
+    if setting.roughness is not None:
+        beyond = found.axes[1] - max(math.log(HEIGHT * setting.roughness), found.axes[1][0])
+        found = found.weighted(-0.5 * (np.maximum(beyond, 0.0) / _MEASURED) ** 2)
+    return found
 
 
 def _resolved(
@@ -240,34 +330,44 @@ def _tree(
     from_dict: Any,
     family: Family,
     setting: Setting,
-    found: Table,
-    chain: Array,
-    log: Array,
+    tables: tuple[Table, Table | None, Table],
     series: Sequence[Series],
     *,
     scatters: bool,
     unknown: bool,
 ) -> xr.DataTree:
-    elongation = np.exp(chain[..., 1])
-    drawn = {
-        family.parameter: chain[..., 0],
+    found, rough, smooth = tables
+    inferred = found.values.ndim > 2 + scatters and not unknown
+    names = [*(["scatter"] if scatters else []), *(["friction"] if inferred else [])]
+
+    def drawn(one: Table) -> tuple[dict[str, Array], Array]:
+        points, log = one.draws(setting.draws + -setting.draws % _CHAINS, np.random.default_rng(setting.seed))
+        chain = points.reshape(_CHAINS, -1, points.shape[1])
+        values = {family.parameter: chain[..., 0], "surface": np.exp(chain[..., 1])}
+        values |= {name: chain[..., 2 + place] for place, name in enumerate(names)}
+        if scatters:
+            values["scatter"] = np.exp(values["scatter"])
+        return values, log.reshape(_CHAINS, -1)
+
+    shaped, log = drawn(found)
+    elongation = shaped.pop("surface")
+    shaped = {
+        family.parameter: shaped[family.parameter],
         "elongation": elongation,
         "out_of_roundness": 0.25 * setting.diameter * elongation,
+    } | shaped
+    groups = {
+        "posterior": shaped,
+        "sample_stats": {"lp": log},
+        "observed_data": {"numbers": np.array([one.observed for one in series])},
     }
-    inferred = chain.shape[2] > 2 + scatters and not unknown
-    names = [*(["scatter"] if scatters else []), *(["friction"] if inferred else [])]
-    drawn |= {name: chain[..., 2 + place] for place, name in enumerate(names)}
-    scatter = None
-    if scatters:
-        scatter = drawn["scatter"] = np.exp(drawn["scatter"])
-    tree: xr.DataTree = from_dict(
-        {
-            "posterior": drawn,
-            "sample_stats": {"lp": log},
-            "observed_data": {"numbers": np.array([one.observed for one in series])},
-        },
-        sample_dims=["chain", "draw"],
-    )
+    tree: xr.DataTree = from_dict(groups, sample_dims=["chain", "draw"])
+    if rough is not None:
+        asperities, _ = drawn(rough)
+        asperities["roughness"] = asperities.pop("surface") / HEIGHT
+        values = {name: (("chain", "draw"), each) for name, each in asperities.items()}
+        tree["rough"] = xr.DataTree(xr.Dataset(values, coords=tree["posterior"].coords))
+        tree["rough"]["roughness"].attrs["units"] = "m"
     for node in tree.subtree:  # the same draws are the same result, whenever they were made
         node.attrs.pop("created_at", None)
     tree["posterior"]["out_of_roundness"].attrs["units"] = "m"
@@ -277,7 +377,8 @@ def _tree(
         coords={"elongation": np.exp(found.axes[1])},
     )
     tree["likelihood"] = xr.DataTree(shape)
-    verdict = judge(found, scatters=scatters)
+    verdict = judge(found, rough, smooth, scatters=scatters)
+    best = found if rough is None or found.best >= rough.best else rough
     tree.attrs |= {
         "title": "Posterior from the times of impacts",
         "source": f"restitution {version('restitution')}",
@@ -285,12 +386,27 @@ def _tree(
         "form": family.form,
         **setting.model_dump(exclude_none=True),
         "explained_by": verdict.cause,
+        "log_bayes_factor_surface": verdict.for_surface,
         "log_bayes_factor_shape": verdict.for_shape,
         **({"log_bayes_factor_scatter": verdict.for_scatter} if scatters else {}),
-        "elongation_determined": int(verdict.cause in ("shape", "both")),
+        "elongation_determined": int(verdict.surface == "shape" and verdict.cause in ("shape", "both")),
         "elongation_upper_limit": found.limit(1),
-        "predictive_p_value": min(1.0, len(found.signs) * min(found.signs)),
-        "verdict": disagreement(found)
-        + sentence(found, verdict, family.words, setting.diameter, elongation, scatter, unknown=unknown),
+        "predictive_p_value": min(1.0, len(best.signs) * min(best.signs)),
+        "verdict": disagreement(best)
+        + sentence(
+            found,
+            rough,
+            verdict,
+            family.words,
+            setting.diameter,
+            elongation,
+            shaped.get("scatter"),
+            unknown=unknown,
+        ),
     }
+    if rough is not None:
+        tree.attrs |= {
+            "log_bayes_factor_roughness": verdict.for_roughness,
+            "roughness_upper_limit": rough.limit(1) / HEIGHT,
+        }
     return tree

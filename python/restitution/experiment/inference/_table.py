@@ -2,8 +2,8 @@
 
 import functools
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -41,11 +41,14 @@ class Table:
         Over these axes.
     signs : tuple of float
         Probabilities of what was observed, were the best ball true: as of `Density.beyond`.
+    best : float
+        The largest logarithm of a likelihood.
     """
 
     axes: tuple[Array, ...]
     values: Array
     signs: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0)
+    best: float = 0.0
 
     def between(self) -> RegularGridInterpolator:
         """Interpolate linearly."""
@@ -53,7 +56,7 @@ class Table:
 
     def at_friction(self, place: int) -> "Table":
         """Return the likelihood at one end of the friction, 0 or -1, the last axis."""
-        return Table(self.axes[:-1], self.values[..., place], self.signs)
+        return Table(self.axes[:-1], self.values[..., place], self.signs, self.best)
 
     def draws(self, number: int, rng: np.random.Generator) -> tuple[Array, Array]:
         """Return independent draws of exp of what is interpolated, and ln of it: shapes (n, p) and (n,).
@@ -81,20 +84,32 @@ class Table:
             points, logs = np.concatenate([points, tried[kept]]), np.concatenate([logs, value[kept]])
         return points[:number], logs[:number]
 
+    def weighted(self, logarithm: Array) -> "Table":
+        """Return the likelihood times a prior along the second axis, whose mean there is made 1."""
+        line = self.axes[1]
+        weight = np.exp(logarithm - logarithm.max())
+        weight = np.log(np.maximum(weight / np.trapezoid(weight, line) * np.ptp(line), 1e-300))
+        shaped = weight.reshape(-1, *(1,) * (self.values.ndim - 2))
+        return replace(self, values=self.values + shaped)
+
     def profile(self, axis: int) -> Array:
         """Return the largest value over all other axes."""
         return np.asarray(self.values.max(axis=tuple(k for k in range(self.values.ndim) if k != axis)))
 
     def log_evidence(self, *ends: int) -> float:
-        """Return ln of the mean likelihood for priors uniform along the axes, or at the low ends of some."""
+        """Return ln of the mean likelihood for priors uniform along the axes, or at the low ends of some.
+
+        Along the first, whose length differs from table to table, it is the integral.
+        """
         values, axes = self.values, list(self.axes)
         for end in sorted(ends, reverse=True):
             values = np.asarray(values.take(0, axis=end))
             del axes[end]
         largest = float(values.max())
         mean: Any = np.exp(values - largest)
-        for line in reversed(axes):
+        for line in reversed(axes[1:]):
             mean = np.trapezoid(mean, line, axis=-1) / np.ptp(line)
+        mean = np.trapezoid(mean, axes[0], axis=-1)
         return largest + math.log(mean)
 
     def limit(self, axis: int) -> float:
@@ -114,16 +129,20 @@ class Table:
 def table(
     series: Sequence[Series],
     family: Family,
-    elongations: Array,
+    simulated: Callable[[Series, float, float, float | None, int], Array],
+    nodes: Array,
     scatters: Sequence[float | None],
     frictions: Sequence[float | None],
     particles: int,
     seed: int,
 ) -> Table:
-    """Simulate at every L/R, scatter of ε_n and friction.
+    """Simulate at every node, scatter of ε_n and friction.
+
+    Simulated are flights of a series with the parameter of ε_n, the node, the friction and a seed.
 
     What the numbers of a series are, less the true parameter, hardly depends on the parameter: they are
-    simulated at one value of it, that which the series have by least squares.
+    simulated at one value of it, that which the series have by least squares. All nodes have the same random
+    numbers: what these do to the likelihood of a series would else be a peak at some node.
     """
     middle = family.inside(float(np.mean([one.observed[0] for one in series])))
     low, high = family.range
@@ -131,10 +150,8 @@ def table(
     unseen = max(_NO_SCATTER, min(one.unseen for one in series))
     widths = [0.0 if scatter is None or scatter <= unseen else scatter for scatter in scatters]
     densities: list[list[Density]] = []
-    for number, (x, mu) in enumerate(product(elongations, frictions)):
-        body, law = family.body(float(x)), family.law_of(middle, mu)
-        start = seed + 1000003 * number
-        flights = [one.simulated(body, law, particles, start + 7 * k) for k, one in enumerate(series)]
+    for x, mu in product(nodes, frictions):
+        flights = [simulated(one, middle, float(x), mu, seed + 7 * k) for k, one in enumerate(series)]
         for place, width in enumerate(widths):
             if place > 0 and width == widths[place - 1]:
                 densities.append(densities[-1])
@@ -157,8 +174,8 @@ def table(
     best = densities[int(np.argmax(logs.max(axis=1)))]
     shares = np.array([d.beyond(one.observed) for d, one in zip(best, series, strict=True)])
     signs = np.minimum(1.0, len(shares) * shares.min(axis=0))  # the least of several
-    values = logs.T.reshape(grid.size, len(elongations), len(frictions), len(scatters)).swapaxes(2, 3)
-    axes: list[Array] = [grid, np.log(elongations)]
+    values = logs.T.reshape(grid.size, len(nodes), len(frictions), len(scatters)).swapaxes(2, 3)
+    axes: list[Array] = [grid, np.log(nodes)]
     values, axes[1] = _finer(values, axes[1], 1)
     if scatters[0] is None:
         values = values[:, :, 0]
@@ -169,7 +186,7 @@ def table(
         values = values[..., 0]
     else:
         axes.append(np.array(frictions, dtype=np.float64))
-    return Table(tuple(axes), values, tuple(signs))
+    return Table(tuple(axes), values, tuple(signs), float(values.max()))
 
 
 def _finer(values: Array, axis: Array, place: int) -> tuple[Array, Array]:

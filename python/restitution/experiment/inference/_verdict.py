@@ -7,10 +7,12 @@ import numpy as np
 import numpy.typing as npt
 
 from restitution._internal.text import digits
+from restitution.experiment.budget.experiment import HEIGHT
 from restitution.experiment.inference._table import Table
 
 Array = npt.NDArray[np.float64]
-Cause = Literal["shape", "material", "both", "neither", "undecided"]
+Surface = Literal["shape", "roughness", "surface"]
+Cause = Surface | Literal["material", "both", "neither", "undecided"]
 
 _STRONG = 20.0
 """Bayes factor from which an explanation is needed: strong evidence (Kass and Raftery, 1995)."""
@@ -30,38 +32,60 @@ _SIGNS = (
 
 
 class Verdict(NamedTuple):
-    """Bayes factors, natural logarithms, and the cause that follows."""
+    """The cause, and Bayes factors, natural logarithms, of its parts against their absence."""
 
     cause: Cause
-    for_shape: float  # of balls with a shape, against round ones
-    for_scatter: float  # of materials that scatter, against those that do not
+    surface: Surface  # the part of the surface in it
+    for_shape: float
+    for_scatter: float  # of the material
+    for_roughness: float
+    for_surface: float
 
 
-def judge(found: Table, *, scatters: bool) -> Verdict:
-    """Compare shape, material, both and neither, each with half the prior probability of being there.
+def judge(found: Table, rough: Table | None, smooth: Table, *, scatters: bool) -> Verdict:
+    """Compare a surface that is not that of a sphere, a material that scatters, both and neither.
 
-    Without a shape L/R is at the low end of its prior, without scatter that of ε_n is.
+    Surface and material have half the prior probability each of being there; shape and asperities share that
+    of the surface. Without them L/R is at the low end of its prior in the table `smooth`, and without scatter
+    that of ε_n is.
     """
-    if not scatters:
-        shape, neither = found.log_evidence(), found.log_evidence(_ELONGATION)
-        told = shape - neither > math.log(_STRONG)
-        return Verdict("shape" if told else "neither", shape - neither, -math.inf)
-    both, material = found.log_evidence(), found.log_evidence(_ELONGATION)
-    shape, neither = found.log_evidence(_SCATTER), found.log_evidence(_ELONGATION, _SCATTER)
-    for_shape = float(np.logaddexp(shape, both) - np.logaddexp(material, neither))
-    for_scatter = float(np.logaddexp(material, both) - np.logaddexp(shape, neither))
+
+    def total(one: Table, *ends: int) -> tuple[float, float]:
+        """Return ln of the evidence without and with a material that scatters."""
+        if not scatters:
+            return one.log_evidence(*ends), -math.inf
+        return one.log_evidence(*ends, _SCATTER), one.log_evidence(*ends)
+
+    none = total(smooth, _ELONGATION)
+    shape = total(found)
+    asperities = (-math.inf, -math.inf) if rough is None else total(rough)
+    half = 0.0 if rough is None else math.log(0.5)
+    surface = tuple(half + float(np.logaddexp(a, b)) for a, b in zip(shape, asperities, strict=True))
     strong = math.log(_STRONG)
+
+    def against(one: tuple[float, float], other: tuple[float, float]) -> float:
+        """Compare a half of what surfaces there are with the rest: the other half, and none."""
+        rest = np.logaddexp(np.logaddexp(*none), half + np.logaddexp(*other)) - math.log(1.5 if half else 1.0)
+        return float(np.logaddexp(*one) - rest)
+
+    for_surface = float(np.logaddexp(surface[0], surface[1]) - np.logaddexp(*none))
+    for_shape, for_roughness = against(shape, asperities), against(asperities, shape)
+    for_scatter = float(np.logaddexp(none[1], surface[1]) - np.logaddexp(none[0], surface[0]))
+    which: Surface = "surface" if rough is not None else "shape"
+    if max(for_shape, for_roughness) > strong:
+        which = "shape" if for_shape > for_roughness else "roughness"
     cause: Cause
-    match (for_shape > strong, for_scatter > strong):
+    match (for_surface > strong, for_scatter > strong):
         case (True, True):
             cause = "both"
         case (True, False):
-            cause = "shape"
+            cause = which
         case (False, True):
             cause = "material"
         case _:
-            cause = "undecided" if max(shape, material, both) - neither > strong else "neither"
-    return Verdict(cause, for_shape, for_scatter)
+            most = max(*shape, *asperities, none[1])
+            cause = "undecided" if most - none[0] > strong else "neither"
+    return Verdict(cause, which, for_shape, for_scatter, for_roughness, for_surface)
 
 
 def disagreement(found: Table) -> str:
@@ -80,6 +104,7 @@ def disagreement(found: Table) -> str:
 
 def sentence(
     found: Table,
+    rough: Table | None,
     verdict: Verdict,
     form: str,
     diameter: float,
@@ -96,41 +121,63 @@ def sentence(
         f"L/R = {middle:.2g}, between {low:.2g} and {high:.2g} (90 %), an out-of-roundness of "
         f"{digits(micrometres * middle)} µm, for a ball of the form {form}"
     )
+    at_most = f"L/R is below {most:.2g} (95 %), the out-of-roundness below {digits(micrometres * most)} µm"
     if unknown:
-        rng = np.random.default_rng(1)
-        sliding, sticking = (
-            float(np.exp(np.median(found.at_friction(end).draws(_DRAWS, rng)[0][:, _ELONGATION])))
-            for end in (0, -1)
-        )
+        sliding, sticking = _with_each_friction(found)
         shape += (
             f" and unknown friction (without friction L/R = {sliding:.2g}, with contacts that stick "
             f"{sticking:.2g})"
         )
-    at_most = (
-        f"L/R is below {most:.2g} (95 %), the out-of-roundness below {digits(micrometres * most)} µm, for a "
-        f"ball of the form {form}"
+    asperities, either = "", shape
+    if rough is not None:
+        drawn = np.exp(rough.draws(_DRAWS, np.random.default_rng(1))[0][:, _ELONGATION])
+        low, middle, high = 1e6 * np.quantile(drawn, (0.05, 0.5, 0.95)) / HEIGHT
+        asperities = f"asperities with Ra = {middle:.2g} µm, between {low:.2g} and {high:.2g} (90 %)"
+        if unknown:
+            sliding, sticking = (1e6 * one / HEIGHT for one in _with_each_friction(rough))
+            asperities += f" (without friction {sliding:.2g}, with contacts that stick {sticking:.2g})"
+        most = 1e6 * rough.limit(_ELONGATION) / HEIGHT
+        at_most += f", and Ra below {most:.2g} µm"
+        either = f"either {shape}; or a round ball with {asperities}"
+    at_most += f", for a ball of the form {form}"
+    told = {
+        "shape": f"The times determine the shape: {shape}",
+        "roughness": f"The times determine the roughness of a round ball: {asperities}",
+        "surface": f"The surface is not that of a sphere: {either}",
+    }[verdict.surface]
+    open_still = (
+        " The times do not tell which; a measured out-of-roundness or Ra does."
+        if verdict.surface == "surface"
+        else ""
     )
     undetermined = "The times do not determine the shape"
     round_as_well = f"{undetermined}: a round ball explains them as well. {at_most}."
     if scatter is None:
-        told = f"The times determine the shape, if ε_n does not scatter: {shape}."
-        return told if verdict.cause == "shape" else round_as_well
+        assumed = told.replace(":", ", if ε_n does not scatter:", 1)
+        return f"{assumed}.{open_still}" if verdict.cause == verdict.surface else round_as_well
     below, usual, above = np.quantile(scatter, (0.05, 0.5, 0.95))
     material = f"ε_n scatters by {usual:.2g}, between {below:.2g} and {above:.2g} (90 %)"
     at_most_scatter = f"ε_n scatters by less than {found.limit(_SCATTER):.2g} (95 %)"
     match verdict.cause:
-        case "shape":
-            return (
-                f"The times determine the shape: {shape}. If the material scatters, too, {at_most_scatter}."
-            )
+        case "shape" | "roughness" | "surface":
+            return f"{told}.{open_still} If the material scatters, too, {at_most_scatter}."
         case "material":
             return f"{undetermined}, and need none: the material scatters, {material}. {at_most}."
         case "both":
-            return f"The times determine the shape: {shape}; and the material scatters: {material}."
+            return f"{told}; and the material scatters: {material}.{open_still}"
         case "neither":
             return f"{round_as_well} If the material scatters, {at_most_scatter}."
     return (
         f"{undetermined}: ε scatters more than errors of the times explain, but a material that scatters "
-        f"explains it as well as a shape. If it is the shape, {at_most}; if it is the material, "
+        f"explains it as well as a surface. If it is the surface, {at_most}; if it is the material, "
         f"{at_most_scatter}. More drops of the same ball decide."
     )
+
+
+def _with_each_friction(found: Table) -> list[float]:
+    """Return the median of what the second axis is the logarithm of, without friction and sticking."""
+    rng = np.random.default_rng(1)
+    return [
+        float(np.exp(np.median(found.at_friction(end).draws(_DRAWS, rng)[0][:, _ELONGATION])))
+        for end in (0, -1)
+    ]

@@ -57,6 +57,7 @@ _LAWS = ("constant", "power law", "viscoelastic", "plastic")
 
 
 _OR_NONE = Allowed("a finite number > 0 (SI units), or None")
+_LENGTH_OR_NONE = Allowed("a finite number >= 0 (m), or None")
 _TIME_OR_NONE = Allowed("a finite number > 0 (s), or None")
 
 
@@ -75,8 +76,8 @@ class Setting(Parameters):
         Standard error of the times of a table that does not give it, in s.
     gravity, gravity_uncertainty : float
         g and its standard error, in m/s².
-    out_of_roundness : float, optional
-        Of the ball, in m, where it was measured.
+    out_of_roundness, roughness : float, optional
+        Of the ball, the second as Ra, in m, where they were measured.
     wall : float, optional
         Thickness of the wall of a hollow ball, in m.
     doubtful : bool
@@ -90,9 +91,8 @@ class Setting(Parameters):
     time_uncertainty: Annotated[Number | None, Field(gt=0, description="s"), _TIME_OR_NONE] = None
     gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
     gravity_uncertainty: Annotated[Number, Field(ge=0, description="m/s²")] = 0.0
-    out_of_roundness: Annotated[
-        Number | None, Field(ge=0, description="m"), Allowed("a finite number >= 0 (m), or None")
-    ] = None
+    out_of_roundness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
+    roughness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
     wall: Wall = None
     doubtful: bool = False
 
@@ -349,6 +349,7 @@ def _series(heard: xr.Dataset, number: int, setting: Setting, told: Separation) 
             diameter=setting.diameter,
             mass=setting.mass,
             out_of_roundness=setting.out_of_roundness,
+            roughness=setting.roughness,
             wall=setting.wall,
             drag=setting.drag,
         )

@@ -134,10 +134,13 @@ def _shape(found: Shape) -> list[str]:
     if found.draws is None:
         return parts
     drawn = found.draws["posterior"].to_dataset()
+    if "rough" in found.draws:
+        drawn = drawn.assign(roughness=found.draws["rough"].to_dataset().roughness)
     rows = []
     for name, values in drawn.data_vars.items():
         low, middle, high = np.quantile(values, (0.05, 0.5, 0.95))
-        scale, digits = (1e6, 3) if name == "out_of_roundness" else (1.0, 3 if name == "elongation" else 6)
+        scale = 1e6 if name in ("out_of_roundness", "roughness") else 1.0
+        digits = 6 if scale == 1.0 and name != "elongation" else 3
         words = _NAMES.get(str(name), str(name).replace("_", " "))
         rows.append([prose(words), *(f"{scale * x:.{digits}g}" for x in (middle, low, high))])
     parts += [
@@ -148,14 +151,21 @@ def _shape(found: Shape) -> list[str]:
         paragraph(
             "A ball with two lobes, L = 2t, released at rest at an unknown angle, on a plate with unknown "
             "friction: where it sticks at the contact a full ball gets 2/7 of the spin, and the same times "
-            "need twice the L/R. The prior is uniform in ln L/R. A ball that was already spinning, or drag "
-            "that is neglected, would be taken for shape."
+            "need twice the L/R. Asperities act through a lever arm as a shape does: L/R is of a smooth "
+            "ball, Ra of a round one. The priors are uniform in ln L/R and ln Ra unless they were measured. "
+            "A ball that was already spinning would be taken for shape; drag that is neglected, for a "
+            "material."
         ),
     ]
     return parts
 
 
-_NAMES = {"normal": "ε_n", "elongation": "L/R", "out_of_roundness": "out-of-roundness (µm)"}
+_NAMES = {
+    "normal": "ε_n",
+    "elongation": "L/R",
+    "out_of_roundness": "out-of-roundness (µm)",
+    "roughness": "or, of a round ball, Ra (µm)",
+}
 
 
 def _budget(found: Shape) -> list[str]:

@@ -1,10 +1,12 @@
 """The ball's shape as the times of a series determine it, and the error budget of its ε."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
+from scipy.special import expit
 
 from restitution import flight
 from restitution._internal.datasets import Content
@@ -12,6 +14,7 @@ from restitution._internal.parameters import ParameterError, TooLargeError
 from restitution._internal.text import digits
 from restitution.bodies import Form, from_roundness
 from restitution.experiment.budget import ErrorBudget, error_budget
+from restitution.experiment.budget.experiment import ROUGHEST
 from restitution.experiment.flight.drag import Drag
 from restitution.experiment.inference import posterior
 from restitution.experiment.listen._agreement import compared, disagreement
@@ -56,6 +59,7 @@ def shape(
     diameter: float,
     mass: float | None,
     out_of_roundness: float | None,
+    roughness: float | None,
     wall: float | None,
     drag: Drag | None,
 ) -> Shape | None:
@@ -70,13 +74,21 @@ def shape(
     )
     if apart <= _APART:
         try:
-            draws = posterior(data, law.normal, diameter=diameter, wall=wall, particles=_PARTICLES)
+            draws = posterior(
+                data,
+                law.normal,
+                diameter=diameter,
+                wall=wall,
+                out_of_roundness=out_of_roundness,
+                roughness=roughness,
+                particles=_PARTICLES,
+            )
             verdict = str(draws.attrs["verdict"])
         except TooLargeError:
             raise
         except ParameterError as error:
             verdict = f"No shape is inferred: {error}."
-    t, assumed, too_large = _roundness(out_of_roundness, draws, diameter)
+    t, ra, assumed = _surface(out_of_roundness, roughness, draws)
     form: Form = "dumbbell" if draws is None else draws.attrs["form"]
     if t is None:
         return Shape(law, draws, verdict, None, assumed)
@@ -86,6 +98,7 @@ def shape(
             from_roundness(diameter, t, density=density, form=form, wall=wall),
             law.normal,
             drop=_drop(data, law),
+            roughness=min(ra, ROUGHEST * 0.5 * diameter),
             impacts=int(np.isfinite(data.restitution).sum()),
             timing=float(np.nanmedian(data.uncertainty)),
             gravity=float(data.attrs["gravity"]),
@@ -99,7 +112,7 @@ def shape(
     except ParameterError as error:
         return Shape(law, draws, verdict, None, f"No budget of errors: {error}.")
     numbers = list(compared(data, fits, budget, _material(draws)))
-    return Shape(law, draws, verdict, budget, assumed, disagreement(numbers, too_large))
+    return Shape(law, draws, verdict, budget, assumed, disagreement(numbers))
 
 
 def _material(draws: xr.DataTree | None) -> float:
@@ -130,28 +143,32 @@ def _law(
     return None
 
 
-def _roundness(
-    measured: float | None, draws: xr.DataTree | None, diameter: float
-) -> tuple[float | None, str, str]:
-    """Choose the out-of-roundness of the budget; say which, and why the errors may be smaller."""
+def _surface(
+    measured: float | None, roughness: float | None, draws: xr.DataTree | None
+) -> tuple[float | None, float, str]:
+    """Choose the out-of-roundness and Ra of the budget, in m, and say which.
+
+    The variance of ε goes as t⁴, and as Ra². That of the budget is the mean over the posterior, in which a
+    sphere has the weight that its probability gives it.
+    """
     if measured is not None:
-        assumed = f"The out-of-roundness is {1e6 * measured:.3g} µm, as measured."
-        return measured, assumed, "The ball is rounder than was measured, or hardly turned between impacts."
+        assumed = f"The out-of-roundness is {1e6 * measured:.3g} µm, as measured"
+        of_surface = "" if roughness is None else f", and Ra {1e6 * roughness:.3g} µm"
+        return measured, roughness or 0.0, f"{assumed}{of_surface}."
     if draws is None:
-        return None, "No budget of errors without an out-of-roundness; give it.", ""
-    if draws.attrs["elongation_determined"]:
-        t = 0.25 * diameter * float(draws["posterior"].to_dataset().elongation.median())
-        assumed = f"The out-of-roundness is taken to be {digits(1e6 * t)} µm, the median of the posterior."
-        return t, assumed, "Other drops of such a ball would scatter more than this one."
-    t = 0.25 * diameter * float(draws.attrs["elongation_upper_limit"])
-    assumed = (
-        f"The out-of-roundness is taken to be {digits(1e6 * t)} µm, the upper limit that the times give; the "
-        "errors from the shape are therefore upper limits as well, and may be far above those of the fit."
-    )
-    too_large = (
-        "The budget is of the largest out-of-roundness that the times allow: the ball may be far rounder."
-    )
-    return t, assumed, too_large
+        return None, 0.0, "No budget of errors without an out-of-roundness; give it."
+    share = float(expit(draws.attrs["log_bayes_factor_surface"]))
+    begin = f"By the posterior the surface is not that of a sphere with a probability of {digits(share)}"
+    if draws.attrs["explained_by"] == "roughness":
+        ra = math.sqrt(share * float((draws["rough"].to_dataset().roughness ** 2).mean()))
+        return (
+            0.0,
+            ra,
+            f"{begin}. The budget is of Ra = {digits(1e6 * ra)} µm, which has its mean variance of ε.",
+        )
+    t = (share * float((draws["posterior"].to_dataset().out_of_roundness ** 4).mean())) ** 0.25
+    what = f"an out-of-roundness of {digits(1e6 * t)} µm"
+    return t, 0.0, f"{begin}. The budget is of {what}, which has its mean variance of ε."
 
 
 def _drop(data: xr.Dataset, law: Frictionless) -> float:
