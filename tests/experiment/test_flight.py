@@ -210,21 +210,21 @@ def test_a_dataset_says_what_was_measured(
     assert (found.gravity, found.drop) == (9.8, height)
     assert found.terminal == (drag.terminal_velocity if drag else None)
     of_times = [0.0 if np.isnan(time) else 2e-5**2 for time in times]
-    common = [0.02**2, error**2, drag.uncertainty**2 if drag else 0.0]
+    common = [0.02**2, error**2, drag.uncertainty**2 if drag else 0.0, 0.0]
     np.testing.assert_allclose(found.variances, [*of_times, *common], rtol=1e-14)
 
 
 @pytest.mark.parametrize("drag", [None, DRAG])
 def test_derivatives_of_a_chain_are_its_differences(drag: rs.flight.Drag | None) -> None:
-    """By each time, g, the height of the drop and the terminal velocity; 0 where there is no speed."""
+    """By each time, g, drop, terminal velocity and contact time; 0 where there is no speed."""
     times = one_series(6)
     times[3] = np.nan
     given = measured(times, np.full(6, 1e-5), (9.81, 0.0), (0.2, 0.0), drag)
     found = chain(given)
     assert np.isnan(found.before).tolist() == [False, False, False, True, True, False]
     assert np.isnan(found.after).tolist() == [False, False, True, True, False, True]
-    for number in range(times.size + 3):
-        step = np.zeros(times.size + 3)
+    for number in range(times.size + 4):
+        step = np.zeros(times.size + 4)
         step[number] = 1e-5
         up, down = chain(given.moved(step)), chain(given.moved(-step))
         for by, one, other in (
@@ -233,3 +233,62 @@ def test_derivatives_of_a_chain_are_its_differences(drag: rs.flight.Drag | None)
         ):
             expected = np.nan_to_num((one - other) / 2e-5)
             np.testing.assert_allclose(by[:, number], expected, rtol=1e-6, atol=1e-7)
+
+
+def bounced(coefficient: float, contact: float, impacts: int, speed: float = 1.4) -> np.ndarray:
+    """Times of sounds of a ball that rests on the plate for `contact` v^(-1/5) at each impact."""
+    times = [0.0]
+    for _ in range(impacts - 1):
+        times.append(times[-1] + contact * speed**-0.2 + 2.0 * coefficient * speed / 9.81)
+        speed *= coefficient
+    return np.array(times)
+
+
+def test_the_time_of_contact_is_no_flight() -> None:
+    """0.8 ms of a table-tennis ball: neglected, ε comes out .0004 high at 1 m/s; given, it is right."""
+    times = bounced(0.9, 8e-4, 22)
+    neglected = rs.flight.restitution(times, 1e-6).restitution.values[1:-1]
+    assert 3e-4 < neglected[2] - 0.9 < 7e-4
+    assert neglected[-1] - 0.9 > 1.2e-3
+    known = rs.flight.restitution(times, 1e-6, contact_time=8e-4, drop_height=1.4**2 / 2.0 / 9.81)
+    assert known.restitution.values[:-1] == pytest.approx(0.9, abs=5e-6)
+    assert known.attrs["contact_time"] == 8e-4
+
+
+def test_a_contact_that_is_known_to_an_error_makes_no_law_of_speed() -> None:
+    """It moves all ε together: with its error a constant fits, which without one is refuted."""
+    times = bounced(0.9, 2e-4, 20) + np.random.default_rng(1).normal(0.0, 1e-6, 20)
+    for contact, refuted in ((None, True), (rs.flight.ContactTime(at_1_m_s=0.0, uncertainty=2e-4), False)):
+        data = rs.flight.restitution(times, 1e-6, contact_time=contact)
+        constant, power = (rs.flight.fit(data, law) for law in ("constant", "power law"))
+        assert (constant.p_value < 1e-6) == refuted
+        assert (constant.aic - power.aic > 6.0) == refuted
+        if not refuted:
+            error = constant.errors["restitution"]
+            assert abs(constant.parameters["restitution"] - 0.9) < 4.0 * error < 1e-5
+
+
+def test_contact_times_are_those_of_hertz_and_reissner() -> None:
+    """20 mm of steel on glass: .09 ms (Hertz, as in Johnson's Contact Mechanics); table tennis: .75 ms."""
+    steel = {"young_modulus": 2.1e11, "poisson_ratio": 0.3}
+    glass = {"young_modulus": 7e10, "poisson_ratio": 0.22}
+    found = rs.flight.ContactTime.of_spheres(diameter=0.02, mass=0.0327, ball=steel, plate=glass)
+    modulus = 1.0 / (0.91 / 2.1e11 + (1.0 - 0.22**2) / 7e10)
+    assert found.at_1_m_s == pytest.approx(2.87 * (0.0327**2 / (0.01 * modulus**2)) ** 0.2, rel=1e-12)
+    assert 7e-5 < found.at_1_m_s < 1e-4
+    assert found.uncertainty == pytest.approx(0.1 * found.at_1_m_s)
+    for known in ({"mass": 2.7e-3}, {"wall": 4e-4}, {"mass": 2.7e-3, "wall": 4e-4}):
+        hollow = rs.flight.ContactTime.possible(diameter=0.04, **known)
+        assert hollow.at_1_m_s == 0.0
+        assert 6e-4 < hollow.uncertainty < 9e-4
+    assert rs.flight.ContactTime.possible(diameter=6e-3).uncertainty > 2.0 * 2.3e-5
+
+
+@pytest.mark.parametrize("given", [-1.0, "short", np.inf])
+def test_a_contact_time_is_a_time(given: object) -> None:
+    with pytest.raises(
+        ValueError, match=r"^contact_time = .*: must be a ContactTime, or a number of seconds"
+    ):
+        rs.flight.restitution([0.0, 0.4, 0.78], 1e-4, contact_time=given)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"^contact_time = 0\.2 s at 1 m/s: must be short beside"):
+        rs.flight.restitution([0.0, 0.4, 0.78], 1e-4, contact_time=0.2)

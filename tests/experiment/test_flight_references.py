@@ -249,7 +249,9 @@ def test_series_of_another_g_or_drag_are_refused() -> None:
         flight.restitution(one.times, 2e-5, gravity=G),
         flight.restitution(one.times, 2e-5, gravity=G, gravity_uncertainty=G_ERROR, drag=drag),
     ):
-        with pytest.raises(ValueError, match=r"^data: series with different g or drag; must have the same"):
+        with pytest.raises(
+            ValueError, match=r"^data: series with different g, drag or contact time; must have the same"
+        ):
             flight.fit([one.data(), other])
     changed = one.data()
     changed["time"].attrs["units"] = "ms"

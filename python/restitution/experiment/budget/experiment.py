@@ -194,14 +194,16 @@ class Experiment:
             )
             raise ParameterError(wrong("law", self.law, allowed))
 
-    def measured(self, timing: float, gravity: float, drop: float) -> Measured:
-        """Return the measured times, g and drop, with these standard errors."""
-        variances = np.array([*np.full(self.times.size, timing), gravity, drop, 0.0]) ** 2
+    def measured(self, timing: float, gravity: float, drop: float, contact: float) -> Measured:
+        """Return the measured times, g, drop and no contact time, with these standard errors."""
+        variances = np.array([*np.full(self.times.size, timing), gravity, drop, 0.0, contact]) ** 2
         return Measured(self.times, self.setting.gravity, self.setting.drop, None, variances)
 
-    def covariance(self, timing: float = 0.0, gravity: float = 0.0, drop: float = 0.0) -> Array:
+    def covariance(
+        self, timing: float = 0.0, gravity: float = 0.0, drop: float = 0.0, contact: float = 0.0
+    ) -> Array:
         """Return the covariance of ε less the law at the measured speed, shape (n, n), by standard errors."""
-        given = self.measured(timing, gravity, drop)
+        given = self.measured(timing, gravity, drop, contact)
         links = chain(given)
         n = self.speed.size
         # r_i = v'_i - ε_n(v_i) v_i, over v_i.

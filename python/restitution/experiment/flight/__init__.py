@@ -7,12 +7,13 @@ from restitution.experiment.flight._fit import compare, fit
 from restitution.experiment.flight._law_fit import LawFit
 from restitution.experiment.flight._read import read
 from restitution.experiment.flight._restitution import restitution
+from restitution.experiment.flight.contact import ContactTime
 from restitution.experiment.flight.drag import Drag
 
 if TYPE_CHECKING:
     from restitution.experiment.flight._figure import figure
 
-__all__ = ["Drag", "LawFit", "clock", "compare", "figure", "fit", "read", "restitution"]
+__all__ = ["ContactTime", "Drag", "LawFit", "clock", "compare", "figure", "fit", "read", "restitution"]
 
 
 def __getattr__(name: str) -> Any:

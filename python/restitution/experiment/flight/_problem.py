@@ -25,23 +25,30 @@ _MOST_EXPANSIONS = 10
 def joined(experiments: list[Measured], shift: Array | None) -> Chain:
     """Put series one after the other, their numbers moved by `shift`.
 
-    The times are each series' own, and so is the height of the drop; g and the drag are common.
+    The times are each series' own, and so is the height of the drop; g, drag and contact time are common.
     """
     if (
-        len({(one.gravity, one.terminal, one.variances[-COMMON], one.variances[-1]) for one in experiments})
+        len(
+            {
+                (one.gravity, one.terminal, one.contact, *one.variances[[-COMMON, -2, -1]])
+                for one in experiments
+            }
+        )
         != 1
     ):
-        raise ParameterError(Problem("data", ": series with different g or drag; must have the same"))
+        raise ParameterError(
+            Problem("data", ": series with different g, drag or contact time; must have the same")
+        )
     sizes = [one.times.size for one in experiments]
     total = sum(sizes)
-    columns = total + len(experiments) + 2
+    columns = total + len(experiments) + COMMON - 1
     before, after = np.empty(total), np.empty(total)
     before_by, after_by = np.zeros((total, columns)), np.zeros((total, columns))
     variances = np.zeros(columns)
     row = 0
     for number, (one, size) in enumerate(zip(experiments, sizes, strict=True)):
         rows = slice(row, row + size)
-        places = [*range(row, row + size), total, total + 2 + number, total + 1]
+        places = [*range(row, row + size), total, total + COMMON - 1 + number, total + 1, total + 2]
         part = chain(one if shift is None else one.moved(shift[places]))
         before[rows], after[rows] = part.before, part.after
         before_by[rows, places] = part.before_by

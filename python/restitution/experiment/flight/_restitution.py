@@ -13,6 +13,7 @@ from restitution._internal.arrays import flag
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.experiment.flight._setting import Drop, Errors
 from restitution.experiment.flight.chain import chain, measured
+from restitution.experiment.flight.contact import ContactTime, contact_of
 from restitution.experiment.flight.drag import Drag
 from restitution.experiment.flight.times import checked
 
@@ -28,6 +29,7 @@ def restitution(
     drop_height: float | None = None,
     drop_height_uncertainty: float = 0.0,
     drag: Drag | None = None,
+    contact_time: ContactTime | float | None = None,
     doubtful: bool = False,
 ) -> xr.Dataset:
     """Return impact velocity and coefficient of restitution of each impact of a ball, from their times.
@@ -57,6 +59,9 @@ def restitution(
         coefficient, too.
     drag : Drag, optional
         Air drag. Both speeds of a flight then differ from g Δt/2, and from one another.
+    contact_time : ContactTime or float, optional
+        How long ball and plate touch at 1 m/s, in s, with its standard error: the interval between two sounds
+        is a contact, which lasts as v^(-1/5), and a flight. Left out it is neglected.
     doubtful : bool
         Whether times that a Dataset flags as doubtful count; they are NaN if not.
 
@@ -115,7 +120,12 @@ def restitution(
             "terminal_velocity": drag.terminal_velocity,
             "terminal_velocity_uncertainty": drag.uncertainty,
         }
-    links = chain(measured(instants, errors, (setting.gravity, setting.gravity_uncertainty), drop, drag))
+    contact = contact_of(contact_time)
+    if contact is not None:
+        attrs |= {"contact_time": contact.at_1_m_s, "contact_time_uncertainty": contact.uncertainty}
+    links = chain(
+        measured(instants, errors, (setting.gravity, setting.gravity_uncertainty), drop, drag, contact)
+    )
     ratio = links.after / links.before
     with np.errstate(invalid="ignore"):
         ratio_by = (links.after_by - ratio[:, None] * links.before_by) / links.before[:, None]

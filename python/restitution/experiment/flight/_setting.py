@@ -1,4 +1,4 @@
-"""Values that are measured once in a series: g, the height of the drop, the terminal velocity."""
+"""Values that are measured once in a series: g, the drop, the terminal velocity, the contact time."""
 
 from typing import Annotated, NamedTuple
 
@@ -6,6 +6,7 @@ import xarray as xr
 from pydantic import Field
 
 from restitution._internal.parameters import Number, Parameters, renamed
+from restitution.experiment.flight.contact import ContactTime
 from restitution.experiment.flight.drag import Drag
 from restitution.experiment.flight.times import LARGEST, LEAST
 
@@ -30,6 +31,7 @@ class Setting(NamedTuple):
     gravity: tuple[float, float]
     drop: tuple[float, float] | None
     drag: Drag | None
+    contact: ContactTime | None
 
 
 def setting_of(name: str, data: xr.Dataset) -> Setting:
@@ -56,4 +58,11 @@ def setting_of(name: str, data: xr.Dataset) -> Setting:
                 terminal_velocity=attrs.get("terminal_velocity"),
                 uncertainty=attrs.get("terminal_velocity_uncertainty", 0.0),
             )
-    return Setting((given.gravity, given.gravity_uncertainty), drop, drag)
+    contact = None
+    if "contact_time" in attrs or "contact_time_uncertainty" in attrs:
+        named = {"at_1_m_s": "contact_time", "uncertainty": "contact_time_uncertainty"}
+        with renamed(lambda each: f"{name}.{named.get(each, each)}"):
+            contact = ContactTime(
+                at_1_m_s=attrs.get("contact_time"), uncertainty=attrs.get("contact_time_uncertainty", 0.0)
+            )
+    return Setting((given.gravity, given.gravity_uncertainty), drop, drag, contact)

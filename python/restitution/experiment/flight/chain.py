@@ -9,30 +9,33 @@ import xarray as xr
 from restitution._internal.parameters import ParameterError, Problem
 from restitution.drop.recorded import check_successive
 from restitution.experiment.flight._setting import setting_of
+from restitution.experiment.flight.contact import ContactTime, delays
 from restitution.experiment.flight.drag import Drag, fall, speeds
 from restitution.experiment.flight.times import check_series
 
 Array = npt.NDArray[np.float64]
 
-COMMON = 3
-"""Quantities that are measured once: g, the height of the drop, the terminal velocity."""
+COMMON = 4
+"""Quantities that are measured once: g, the height of the drop, the terminal velocity, the contact time."""
+_LONGEST_CONTACT = 4.0
+"""Intervals must be longer than this many times of contact at 1 m/s."""
 _LONGEST = 50.0
 """Of a flight with drag, in V/g: its body starts with V times the exponential function of this."""
 
 
 @dataclass(frozen=True)
 class Chain:
-    """The speeds of n impacts, and their derivatives by the n + 3 numbers that were measured.
+    """The speeds of n impacts, and their derivatives by the n + 4 numbers that were measured.
 
     Attributes
     ----------
     before, after : ndarray, shape (n,)
         Speed towards and away from the plane, in m/s; NaN where the times do not determine it.
-    before_by, after_by : ndarray, shape (n, n + 3)
-        Derivatives by the n times, g, the height of the drop and the terminal velocity; 0 where the speed
-        is NaN.
-    variances : ndarray, shape (n + 3,)
-        Of these n + 3 numbers. Their errors are independent.
+    before_by, after_by : ndarray, shape (n, n + 4)
+        Derivatives by the n times, g, the height of the drop, the terminal velocity and the contact time at
+        1 m/s; 0 where the speed is NaN.
+    variances : ndarray, shape (n + 4,)
+        Of these n + 4 numbers. Their errors are independent.
     """
 
     before: Array
@@ -44,7 +47,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class Measured:
-    """Measured values of one series of n impacts, and the variances of these n + 3 numbers.
+    """Measured values of one series of n impacts, and the variances of these n + 4 numbers.
 
     Attributes
     ----------
@@ -54,8 +57,10 @@ class Measured:
         In m/s².
     drop, terminal : float or None
         Height of the drop in m, and terminal velocity in m/s, where they count.
-    variances : ndarray, shape (n + 3,)
+    variances : ndarray, shape (n + 4,)
         In the order of `Chain`; 0 where there is not a number.
+    contact : float
+        Time of contact at 1 m/s, in s.
     """
 
     times: Array
@@ -63,6 +68,7 @@ class Measured:
     drop: float | None
     terminal: float | None
     variances: Array
+    contact: float = 0.0
 
     def timed(self, error: float) -> "Measured":
         """Return the chain with one standard error, in s, for all times."""
@@ -70,7 +76,7 @@ class Measured:
         return replace(self, variances=np.append(np.full(n, error**2), self.variances[n:]))
 
     def moved(self, shift: Array) -> "Measured":
-        """Return the chain with other numbers, which differ by `shift`, shape (n + 3,)."""
+        """Return the chain with other numbers, which differ by `shift`, shape (n + 4,)."""
         n = self.times.size
         return replace(
             self,
@@ -78,6 +84,7 @@ class Measured:
             gravity=self.gravity + float(shift[n]),
             drop=None if self.drop is None else self.drop + float(shift[n + 1]),
             terminal=None if self.terminal is None else self.terminal + float(shift[n + 2]),
+            contact=self.contact + float(shift[n + 3]),
         )
 
 
@@ -87,6 +94,7 @@ def measured(
     gravity: tuple[float, float],
     drop: tuple[float, float] | None,
     drag: Drag | None,
+    contact: ContactTime | None = None,
     name: str = "times",
 ) -> Measured:
     """Put together what was measured; g and the height of the drop come with their standard errors.
@@ -103,13 +111,23 @@ def measured(
             speed = f"a terminal velocity V of {drag.terminal_velocity:g} m/s"
             text = f": a flight of {longest:g} s; must be at most {_LONGEST:g} V/g = {most:g} s with {speed}"
             raise ParameterError(Problem(name, text))
-    errors = [gravity[1], 0.0 if drop is None else drop[1], 0.0 if drag is None else drag.uncertainty]
+    contact = ContactTime(at_1_m_s=0.0) if contact is None else contact
+    if np.nanmin(np.diff(times), initial=np.inf) <= _LONGEST_CONTACT * contact.at_1_m_s:
+        text = f" = {contact.at_1_m_s:g} s at 1 m/s: must be short beside the intervals between the impacts"
+        raise ParameterError(Problem("contact_time", text))
+    errors = [
+        gravity[1],
+        0.0 if drop is None else drop[1],
+        0.0 if drag is None else drag.uncertainty,
+        contact.uncertainty,
+    ]
     return Measured(
         times,
         gravity[0],
         None if drop is None else drop[0],
         None if drag is None else drag.terminal_velocity,
         np.concatenate([np.nan_to_num(uncertainty), errors]) ** 2,
+        contact.at_1_m_s,
     )
 
 
@@ -130,9 +148,9 @@ def measured_of(data: xr.Dataset, name: str = "data") -> Measured:
         f"{name}.time",
         f"{name}.uncertainty",
     )
-    gravity, drop, drag = setting_of(name, data)
+    gravity, drop, drag, contact = setting_of(name, data)
     falls = int(data["impact"][0]) == 0
-    return measured(times, errors, gravity, drop if falls else None, drag, f"{name}.time")
+    return measured(times, errors, gravity, drop if falls else None, drag, contact, f"{name}.time")
 
 
 def chain(given: Measured) -> Chain:
@@ -140,18 +158,23 @@ def chain(given: Measured) -> Chain:
     n = given.times.size
     before, after = np.full(n, np.nan), np.full(n, np.nan)
     before_by, after_by = np.zeros((n, n + COMMON)), np.zeros((n, n + COMMON))
-    flight = speeds(np.diff(given.times), given.gravity, given.terminal)
+    intervals = np.diff(given.times)
+    landing = None if given.drop is None else fall(given.drop, given.gravity, given.terminal)
+    first = None if landing is None else landing.speed
+    delay = delays(intervals, given.gravity, first)
+    delay = delays(intervals - given.contact * delay, given.gravity, first)  # v is of the flight alone
+    flight = speeds(intervals - given.contact * delay, given.gravity, given.terminal)
     after[:-1], before[1:] = flight.up, flight.down
-    first = np.arange(n - 1)
-    for matrix, rows, by in ((after_by, first, flight.up_by), (before_by, first + 1, flight.down_by)):
-        matrix[rows, first + 1] = by[0]
-        matrix[rows, first] = -by[0]
+    place = np.arange(n - 1)
+    for matrix, rows, by in ((after_by, place, flight.up_by), (before_by, place + 1, flight.down_by)):
+        matrix[rows, place + 1] = by[0]
+        matrix[rows, place] = -by[0]
         matrix[rows, n] = by[1]
         matrix[rows, n + 2] = by[2]
-    if given.drop is not None:
-        landing = fall(given.drop, given.gravity, given.terminal)
+        matrix[rows, n + 3] = -by[0] * delay
+    if landing is not None:
         before[0] = landing.speed
-        before_by[0, n:] = landing.by
+        before_by[0, n : n + 3] = landing.by
     before_by[np.isnan(before)] = 0.0
     after_by[np.isnan(after)] = 0.0
     return Chain(before, after, before_by, after_by, given.variances)

@@ -89,5 +89,5 @@ def disagreement(numbers: list[Compared]) -> str:
     )
     why = "Beyond the budget, the material, the plate, a spin at release or another law may scatter ε."
     if wrong[0].observed < wrong[0].budget:
-        why = "The ball is rounder or smoother than the budget has it, or hardly turned between impacts."
+        why = "The ball is rounder than was measured or inferred, or hardly turned between impacts."
     return f"The error budget and the times disagree: {said}. {why}"
