@@ -67,9 +67,9 @@ pub enum Error {
         /// The reason.
         fault: Fault,
     },
-    /// The contact search of one particle did not converge.
+    /// The contact search of one particle, or the friction at the contact that it found, did not converge.
     #[error(
-        "particle {particle} (seed {seed}): the contact search did not converge in flight {flight}; \
+        "particle {particle} (seed {seed}): the contact search, or the friction of the impact, did not converge in flight {flight}; \
          this state is a defect of the program, please report it"
     )]
     Numerical {

@@ -696,6 +696,34 @@ fn grazing_contacts_are_limits() {
     assert!(jams > 100);
 }
 
+/// The impulse turns with the axes about the normal, and has the units of velocity over compliance.
+#[test]
+fn neither_axes_nor_units_matter() {
+    let mut random = Random(10);
+    let mut distances = Distances::default();
+    for number in 0..10 * ROUNDS * KINDS {
+        let contact = contact(&mut random, number % KINDS);
+        let (e, mu) = (coefficient(&mut random), random.magnitude(-6.0, 2.0));
+        let law = coulomb(e, mu, HYPOTHESES[number / KINDS % 3]);
+        let (c, s) = random.between(0.0, 6.3).sin_cos();
+        let axes = [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]];
+        let [size, speed] = [0; 2].map(|_| random.magnitude(-40.0, 40.0));
+        let turned = axes.map(|row| apply(&contact.response, row));
+        let response = [0, 1, 2].map(|i| [0, 1, 2].map(|j| size * dot(turned[i], axes[j])));
+        let other = Contact {
+            response,
+            velocity: times(speed, apply(&axes, contact.velocity)),
+        };
+        let [found, expected] = [&other, &contact].map(|contact| answer(&law, contact));
+        let expected = apply(&axes, array(expected.impulse));
+        let expected = times(speed / size, expected);
+        distances.add(&found, expected, &contact.response, || {
+            format!("{law:?} {contact:?} {other:?} {found:?} {expected:?}")
+        });
+    }
+    distances.below(0.5, 100.0);
+}
+
 #[test]
 fn a_compliance_is_that_of_its_bodies() {
     let mut random = Random(9);

@@ -48,10 +48,8 @@ impl WithSimd for FlightAndImpact<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
         let contact = self.bouncing.first_contact(self.start, self.departure)?;
-        match self.bouncing.collide(&contact, self.chance) {
-            Ok(bounce) => Ok((contact, bounce)),
-            Err(fault) => Err(NoImpact::Fault(fault)),
-        }
+        let bounce = self.bouncing.collide(&contact, self.chance)?;
+        Ok((contact, bounce))
     }
 }
 
@@ -182,7 +180,7 @@ impl Bouncing<'_> {
 
     /// The motion after a contact; where ε_n scatters it is drawn with a uniform number.
     #[inline(always)]
-    fn collide(&self, contact: &Landing, chance: Option<f64>) -> Result<Bounce, Fault> {
+    fn collide(&self, contact: &Landing, chance: Option<f64>) -> Result<Bounce, NoImpact> {
         let RigidState {
             velocity,
             attitude,
@@ -196,9 +194,13 @@ impl Bouncing<'_> {
             Compliance::of_body(1.0, &Symmetric::turned(inverse, attitude), arm_in_space);
         let at_contact = velocity + attitude.rotate(spin.cross(arm)); // (7)
         let answer = match chance {
-            Some(chance) => self.law.answer_drawn(&compliance, at_contact, chance)?,
-            None => self.law.answer(&compliance, at_contact)?,
-        };
+            Some(chance) => self.law.answer_drawn(&compliance, at_contact, chance),
+            None => self.law.answer(&compliance, at_contact),
+        }
+        .map_err(NoImpact::Fault)?;
+        if answer.impulse.z.is_nan() {
+            return Err(NoImpact::Unconverged);
+        }
         let impulse = answer.impulse;
         let torque = arm.cross(attitude.inverse().rotate(impulse));
         let [x, y, z] = inverse;

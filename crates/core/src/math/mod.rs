@@ -1,6 +1,9 @@
-//! Vectors, of one particle or of one in each lane, symmetric matrices, rotations, and nodes of a quadrature.
+//! Vectors, of one particle or of one in each lane, symmetric matrices, rotations, zeros of polynomials, and functions by their values at the
+//! nodes of a quadrature.
 
+pub(crate) mod nodal;
 mod quaternion;
+pub(crate) mod roots;
 mod symmetric;
 mod vector;
 

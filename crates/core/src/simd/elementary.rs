@@ -8,7 +8,7 @@
 
 use super::{Pack, one};
 use pulp::Simd;
-use std::f64::consts::{FRAC_1_SQRT_2, FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LN_2, PI};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LN_2, LOG2_E, PI};
 
 /// Largest |x|, in rad, for which sine and cosine are accurate.
 pub const RANGE: f64 = 1_048_576.0;
@@ -230,6 +230,28 @@ pub fn fifth_root(x: f64) -> f64 {
 
 /// Four fifths of the bits of 1, minus an offset that makes the error of the first guess symmetric.
 const FIFTH_OF_BIAS: u64 = 0x3325_ce66_6666_6666;
+
+/// eˣ for |x| < 700, to within 2 ulp, as 2ⁿeʸ with |y| ≤ ½ ln 2: by products and sums alone, for loops in which the compiler takes several
+/// numbers at once also where multiply-adds are not fused.
+#[inline(always)]
+pub(crate) fn plain_exp(x: f64) -> f64 {
+    /// ln 2 as a number of 32 bits and the rest.
+    const HIGH: f64 = 0.693_147_180_369_123_8;
+    const LOW: f64 = 1.908_214_929_270_587_7e-10;
+    let shifted = x * LOG2_E + ROUND;
+    let n = shifted - ROUND;
+    let y = (x - n * HIGH) - n * LOW;
+    let mut sum = EXPONENTIAL[14];
+    for k in (0..14).rev() {
+        sum = sum * y + EXPONENTIAL[k];
+    }
+    f64::from_bits(sum.to_bits().wrapping_add(shifted.to_bits() << 52))
+}
+
+/// ln x of a positive number, to within 0.06, from its representation.
+pub(crate) fn rough_ln(x: f64) -> f64 {
+    ((x.to_bits() >> 20) as f64 / (1_u64 << 32) as f64 - 1022.957) * LN_2
+}
 
 #[cfg(test)]
 mod tests {

@@ -6,8 +6,9 @@
 //! both cases dP_u/dp = −K_nu/K_uu, limited to ±μ. In planar motion the contact velocity is therefore linear in p on either side
 //! of the impulse p_s at which the slip velocity vanishes.
 
-mod general;
+mod phases;
 mod planar;
+mod slipping;
 mod turning;
 
 use super::{Compliant, Components, Contact, Creation, LawKind, Response, Slip};

@@ -15,8 +15,8 @@
 //! its sign, so that v_n is monotone in every piece of the path, and a contact that approaches again during the restitution is
 //! compressed again. There is no jam where the slip grows or sticks, because K is positive definite, so that each one ends.
 
-use super::{Coulomb, Hypothesis, Sliding};
-use crate::law::{Compliance, Components, Contact, Frictionless, Response};
+use crate::old::{Coulomb, Hypothesis, Sliding};
+use crate::old::{Compliance, Components, Contact, Frictionless, Response};
 use crate::simd::{Pack, elementary, one};
 use pulp::Scalar;
 

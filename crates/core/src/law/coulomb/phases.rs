@@ -1,0 +1,155 @@
+//! The phases of an impact with Coulomb friction, whatever its slip does: compression, restitution, and in a jam once more of either.
+//!
+//! A contact that approaches again before its restitution is over is compressed again. The restitution then still owes the fraction of
+//! what all compressions have taken, ε_n of the impulse or ε_n² of the work, less what it has given back. Newton's hypothesis knows no
+//! compression: the impact is over where v_n is first ε_n times the speed of approach.
+
+use super::Hypothesis;
+
+/// An impact, as far as it has come.
+pub(super) struct ImpactSoFar {
+    pub restitution: f64,
+    pub hypothesis: Hypothesis,
+    /// The speed of approach.
+    pub approach: f64,
+    /// v_n.
+    pub speed: f64,
+    /// p, and the tangential impulse.
+    pub normal: f64,
+    pub friction: [f64; 2],
+    /// True if the contact is being compressed, or has Newton's hypothesis to fulfil.
+    pub compressing: bool,
+    /// p at the beginning of this compression or restitution, and ∫v_n dp since.
+    began: f64,
+    work: f64,
+    /// The part of the restitution that is still to come: impulse under Poisson's, work under Stronge's hypothesis.
+    owed: f64,
+}
+
+/// What a part of the path adds.
+pub(super) struct Gain {
+    pub normal: f64,
+    pub friction: [f64; 2],
+    pub speed: f64,
+    pub work: f64,
+}
+
+impl ImpactSoFar {
+    /// A contact that arrives with this speed.
+    pub fn new(hypothesis: Hypothesis, restitution: f64, approach: f64) -> Self {
+        Self {
+            restitution,
+            hypothesis,
+            approach,
+            speed: -approach,
+            normal: 0.0,
+            friction: [0.0; 2],
+            compressing: true,
+            began: 0.0,
+            work: 0.0,
+            owed: 0.0,
+        }
+    }
+
+    /// The impulse, or under Stronge's hypothesis the work, that the restitution has still to give.
+    pub fn missing(&self) -> f64 {
+        match self.hypothesis {
+            Hypothesis::Stronge => self.owed - self.work,
+            _ => self.owed - (self.normal - self.began),
+        }
+    }
+
+    /// The impulse until the present phase is over, if dv_n/dp stays what it is; infinite if it then never is.
+    pub fn left(&self, stiffness: f64) -> f64 {
+        if self.compressing {
+            return if stiffness > 0.0 {
+                (self.wanted_speed() - self.speed) / stiffness
+            } else {
+                f64::INFINITY
+            };
+        }
+        let left = self.missing();
+        if self.hypothesis != Hypothesis::Stronge {
+            return left;
+        }
+        let square = self.speed * self.speed + 2.0 * stiffness * left;
+        if square < 0.0 {
+            f64::INFINITY
+        } else {
+            2.0 * left / (self.speed + square.sqrt())
+        }
+    }
+
+    pub fn add(&mut self, gain: &Gain) {
+        self.normal += gain.normal;
+        for i in 0..2 {
+            self.friction[i] += gain.friction[i];
+        }
+        self.speed += gain.speed;
+        self.work += gain.work;
+    }
+
+    /// v_n at which the compression, or under Newton's hypothesis the impact, is over.
+    pub fn wanted_speed(&self) -> f64 {
+        if self.hypothesis == Hypothesis::Newton {
+            self.restitution * self.approach
+        } else {
+            0.0
+        }
+    }
+
+    /// The present phase, and the restitution after it, in phases as long as the present one.
+    pub fn phases_left(&self) -> f64 {
+        if self.compressing && self.hypothesis != Hypothesis::Newton {
+            1.0 + self.restitution
+        } else {
+            1.0
+        }
+    }
+
+    /// The present phase has come to its end; whether that is the end of the impact.
+    pub fn reached(&mut self) -> bool {
+        if !self.compressing {
+            return true;
+        }
+        self.speed = self.wanted_speed();
+        if self.hypothesis == Hypothesis::Newton {
+            return true;
+        }
+        let e = self.restitution;
+        self.owed += match self.hypothesis {
+            Hypothesis::Stronge => e * e * -self.work,
+            _ => e * (self.normal - self.began),
+        };
+        self.turn_over();
+        self.owed <= 0.0
+    }
+
+    /// The contact approaches again before the restitution is over; never the end of the impact.
+    pub fn pressed_again(&mut self) -> bool {
+        self.speed = 0.0;
+        self.owed = self.missing();
+        self.turn_over();
+        false
+    }
+
+    fn turn_over(&mut self) {
+        self.compressing = !self.compressing;
+        self.began = self.normal;
+        self.work = 0.0;
+    }
+
+    /// Returns whether the end of the present phase, or a new compression, lies at or before a place that is so far away along a piece on
+    /// which v_n is monotone.
+    pub fn passes(&self, gain: &Gain) -> bool {
+        let speed = self.speed + gain.speed;
+        if self.compressing {
+            return speed >= self.wanted_speed();
+        }
+        speed < 0.0
+            || match self.hypothesis {
+                Hypothesis::Stronge => self.work + gain.work >= self.owed,
+                _ => self.normal + gain.normal - self.began >= self.owed,
+            }
+    }
+}
