@@ -19,6 +19,7 @@ from tqdm import tqdm
 
 import restitution as rs
 from restitution import figures as fg
+from restitution.figures.style import SITE, Style, colors, ink
 
 Array = npt.NDArray[np.float64]
 
@@ -143,14 +144,14 @@ def sentence(found: Calibration) -> str:
 
 
 @fg.styled
-def draw(found: Calibration) -> Figure:
+def draw(found: Calibration, *, style: Style | None = None) -> Figure:
     """Draw histograms of the ranks with the band of 95 % for uniform ones."""
     figure, [row] = fg.panels(fg.PAGE, 2.4, 1, 3)
     n, bins = len(found.rank), 10
     low, high = stats.binom(n, 1.0 / bins).ppf([0.025, 0.975])
     for axes, rank, name in zip(row, found.rank.T, (r"$\varepsilon_n$", "$L/R$", "scatter"), strict=True):
-        axes.axhspan(low, high, color="0.85")
-        axes.hist(rank, bins=bins, range=(0.0, 1.0), color=fg.COLORS[0], histtype="step")
+        axes.axhspan(low, high, color=ink(0.15))
+        axes.hist(rank, bins=bins, range=(0.0, 1.0), color=colors()[0], histtype="step")
         axes.set_xlabel(f"rank of the true {name}")
         axes.set_ylabel("experiments")
         axes.set_xlim(0.0, 1.0)
@@ -161,9 +162,9 @@ def main(out: Path, experiments: int) -> None:
     """Write figure and table."""
     found = calibrate(experiments)
     out.mkdir(parents=True, exist_ok=True)
-    fg.save(
-        draw(found), out / "calibration", "Calibration", "Ranks of the truth among draws of the posterior"
-    )
+    text = "Ranks of the truth among draws of the posterior"
+    for style in SITE:
+        fg.save(draw(found, style=style), out / f"calibration{style[4:]}.png", "Calibration", text)
     (out / "calibration.md").write_text(f"{table(found)}\n{sentence(found)}", encoding="utf-8")
     (out / "calibration.csv").write_text(written(found), encoding="utf-8")
 

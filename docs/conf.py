@@ -77,7 +77,7 @@ html_theme_options: dict[str, object] = {
     "footer_end": [],
 }
 html_context = {"default_mode": "auto"}
-html_sidebars: dict[str, list[str]] = {name: [] for name in ("index", "start", "gallery")}
+html_sidebars: dict[str, list[str]] = {name: [] for name in ("index", "start", "gallery", "performance")}
 html_show_sourcelink = False
 html_domain_indices = False
 
@@ -128,16 +128,23 @@ CARDS = {
 
 
 def _cards() -> None:
-    """Cut the pictures of the cards out of the figures."""
+    """Cut the pictures of the cards out of the figures, and out of those for the dark."""
     folder = BUILT.parent / "cards"
     folder.mkdir(exist_ok=True)
     for name, (figure, *box) in CARDS.items():
-        with Image.open(HERE / "images" / figure) as whole:
-            width, height = whole.size
-            left, top, right, bottom = box
-            part = whole.crop((left * width, top * height, right * width, bottom * height)).convert("RGB")
-        part.thumbnail((640, 640))
-        part.save(folder / f"{name}.png")
+        for path in {HERE / "images" / figure, _dark(HERE / "images" / figure)}:
+            with Image.open(path) as whole:
+                width, height = whole.size
+                left, top, right, bottom = box
+                part = whole.crop((left * width, top * height, right * width, bottom * height)).convert("RGB")
+            part.thumbnail((640, 640))
+            part.save(folder / f"{name}{'-dark' * path.stem.endswith('-dark')}.png")
+
+
+def _dark(path: Path) -> Path:
+    """Return the figure for a dark ground that stands beside one, or the same where there is none."""
+    dark = path.with_stem(f"{path.stem}-dark")
+    return dark if dark.exists() else path
 
 
 BUILT.mkdir(parents=True, exist_ok=True)
@@ -183,6 +190,18 @@ def _without_folders(app: object, tree: nodes.document) -> None:
             block.children = [nodes.Text(block.rawsource)]
 
 
+def _for_both_grounds(app: object, tree: nodes.document) -> None:
+    """Show a figure that has one for the dark on a light ground only, and that one on a dark ground."""
+    for image in list(tree.findall(nodes.image)):
+        dark = _dark(HERE / image["uri"])
+        if dark != HERE / image["uri"]:
+            other = image.deepcopy()
+            other["uri"] = image["uri"].replace(f"{dark.stem.removesuffix('-dark')}.", f"{dark.stem}.")
+            other["classes"].append("only-dark")
+            image["classes"].append("only-light")
+            image.parent.insert(image.parent.index(image) + 1, other)
+
+
 def _explorer_leads_back(app: object, error: Exception | None) -> None:
     """Give the explorer, which may stand anywhere, a link to the pages beside it."""
     page = Path(app.outdir) / "explorer.html"  # type: ignore[attr-defined]
@@ -196,4 +215,5 @@ def setup(app: object) -> None:
     app.connect("build-finished", _explorer_leads_back)  # type: ignore[attr-defined]
     app.connect("source-read", _as_on_the_site)  # type: ignore[attr-defined]
     app.connect("doctree-read", _without_folders)  # type: ignore[attr-defined]
+    app.connect("doctree-read", _for_both_grounds, 100)  # type: ignore[attr-defined] # before images are collected
     app.connect("autodoc-process-docstring", _as_written)  # type: ignore[attr-defined]

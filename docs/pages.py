@@ -26,6 +26,8 @@ from typing import Any
 
 import matplotlib
 
+from restitution.figures.style import SITE
+
 ROOT = Path(__file__).parents[1]
 IMAGES = ROOT / "docs" / "images"
 _BLOCK = "<!-- python docs/pages.py {name} -->\n(.*?)<!-- stamp (.*?) -->"
@@ -45,7 +47,8 @@ def energy(impacts: int, images: Path | None) -> str:
 
     data = laws.measure(impacts, 1)
     if images is not None:
-        laws.draw(data).savefig(images / "laws.png", dpi=200)
+        for style in SITE:
+            laws.draw(data, style=style).savefig(images / f"laws{style[4:]}.png", dpi=200)
     return laws.table(data)
 
 
@@ -69,7 +72,8 @@ def imperfections(particles: int, images: Path | None) -> str:
     script = _script("imperfections")
     found = script.measure(particles, 12 if images else 2)
     if images is not None:
-        script.draw(found).savefig(images / "imperfections.png", dpi=200)
+        for style in SITE:
+            script.draw(found, style=style).savefig(images / f"imperfections{style[4:]}.png", dpi=200)
     return str(script.table(found))
 
 

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 
 import restitution as rs
 from restitution import figures as fg
+from restitution.figures.style import SITE, Style, colors, column
 
 Array = npt.NDArray[np.float64]
 
@@ -95,21 +96,21 @@ def compare(elongation: float, particles: int = 2000, seed: int = 1) -> Compared
 
 
 @fg.styled
-def draw(found: list[Compared]) -> Figure:
+def draw(found: list[Compared], *, style: Style | None = None) -> Figure:
     """Draw standard deviation, largest difference and typical bound against the speed."""
-    figure, [[axes]] = fg.panels(fg.COLUMN, 2.9)
+    figure, [[axes]] = fg.panels(*column(2.9))
     for number, one in enumerate(found):
-        color, name = fg.COLORS[number], f"$L/R$ = {one.elongation:g}"
+        color, name = colors()[number], f"$L/R$ = {one.elongation:g}"
         marker = fg.MARKERS[number]
         axes.loglog(one.speed, one.deviation, color=color, marker=marker, label=f"{name}: standard deviation")
         axes.loglog(one.speed, one.largest, color=color, linestyle="none", marker="x", label="largest of all")
         bound = GRAVITY * one.elongation * RADIUS / (2.0 * one.speed**2)
         axes.loglog(one.speed, bound, color=color, linestyle="--", label="$gL/(2v^2)$")
-    axes.set_ylim(2e-5, 20.0)
+    axes.set_ylim(2e-5, 1.0)
     axes.set_xlim(0.07, 1.1)
     axes.set_xlabel("impact velocity $v$ (m/s)")
     axes.set_ylabel("$|\\varepsilon_{\\mathrm{clock}} - \\varepsilon|$")
-    axes.legend(ncols=2, fontsize=6.5, columnspacing=1.0, handlelength=1.5)
+    figure.legend(ncols=2, loc="outside upper center")
     return figure
 
 
@@ -136,9 +137,9 @@ def main(out: Path, particles: int) -> None:
     """Write figure and table."""
     found = [compare(elongation, particles) for elongation in ELONGATIONS]
     out.mkdir(parents=True, exist_ok=True)
-    fg.save(
-        draw(found), out / "clock", "Clock and truth", "What a clock makes of the coefficient of restitution"
-    )
+    text = "What a clock makes of the coefficient of restitution"
+    for style in SITE:
+        fg.save(draw(found, style=style), out / f"clock{style[4:]}.png", "Clock and truth", text)
     (out / "clock.md").write_text(table(found), encoding="utf-8")
 
 

@@ -15,13 +15,17 @@ temperature is θ = <u²>/3 in m²/s². docs/gas.md says what it means and what 
 
 import sys
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.figure import Figure
 from scipy import integrate, optimize, stats
 
 import restitution as rs
 from restitution import figures as fg
+from restitution.figures.style import SITE, Style, colors
 
 Floats = npt.NDArray[np.float64]
 Rule = Callable[[Floats, np.random.Generator], "Floats | float"]
@@ -103,8 +107,7 @@ def repeat(rule: Rule, theta: float, times: Floats, replicas: int) -> list[Float
     return [np.array([x.mean(axis=0), x.std(axis=0, ddof=1) / np.sqrt(replicas)]) for x in columns]
 
 
-@fg.styled
-def main(path: str) -> None:
+def main(path: Path) -> None:
     """Learn p(ε | v) of a dumbbell, cool four gases, print and draw what becomes of them."""
     body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9)
     heights = 3e-3 + np.geomspace(law.normal**2, 1.0, 100)  # in m; so that no first impact stands out
@@ -127,35 +130,59 @@ def main(path: str) -> None:
         r"$\varepsilon = \sqrt{\langle\varepsilon^2\rangle(v)}$",
         r"$\varepsilon$ random, $p(\varepsilon\,|\,v)$",
     )
-    figure, [[cooling, loss, shape]] = fg.panels(fg.PAGE, 2.8, 1, 3)
-    for k, (name, rule) in enumerate(rules.items()):
-        cooled, a2 = repeat(rule, theta, times, replicas=8)
+    gases = {}
+    for name, rule in rules.items():
+        gases[name] = cooled, _ = repeat(rule, theta, times, replicas=8)
         slope = -np.gradient(np.log(cooled[0, 1:]), np.log(times[1:]))
         print(name, *(f"{x:.5f}±{error:.5f}" for x, error in cooled[:, [17, 33, 49]].T), f"{slope[-2]:.2f}")
-        style = {"color": fg.COLORS[k], "marker": fg.MARKERS[k], "linestyle": "none", "label": labels[k]}
-        cooling.errorbar(times[1::3], *cooled[:, 1::3], **style, fillstyle="none")
-        if k != 1:
-            shape.errorbar(times[1::3], *a2[:, 1::3], **style, fillstyle="none")
-    cooling.plot(times, haff(times, law.normal), color=fg.COLORS[0], zorder=0)
-    cooling.plot(times, closure(dist, theta, times) / theta, color=fg.COLORS[3], zorder=0)
-    cooling.axhline(rest, color="0.6", linestyle=":", zorder=0)
-    cooling.set(xscale="log", yscale="log", xlabel=r"$\nu_0 t$", ylabel=r"$\theta/\theta_0$")
     colder = np.geomspace(5e-4, 1.0, 100)
-    loss.plot(colder, [mean_square(dist, x * theta) for x in colder], color=fg.COLORS[3])
-    loss.axhline(law.normal**2, color=fg.COLORS[0])
+    lines = {
+        "closure": closure(dist, theta, times) / theta,
+        "rest": rest,
+        "losses": np.array([mean_square(dist, x * theta) for x in colder]),
+    }
+    for style in SITE:
+        figure = draw(times, list(gases.values()), labels, law.normal, colder, lines, style=style)
+        figure.savefig(path.with_stem(path.stem + style[4:]), dpi=200)
+
+
+@fg.styled
+def draw(
+    times: Floats,
+    gases: list[Any],
+    labels: tuple[str, ...],
+    normal: float,
+    colder: Floats,
+    lines: dict[str, Any],
+    *,
+    style: Style | None = None,
+) -> Figure:
+    """Draw temperatures, losses and the second Sonine coefficient of the gases beside theory."""
+    figure, [[cooling, loss, shape]] = fg.panels(fg.PAGE, 2.8, 1, 3)
+    for k, (cooled, a2) in enumerate(gases):
+        look = {"color": colors()[k], "marker": fg.MARKERS[k], "linestyle": "none", "label": labels[k]}
+        cooling.errorbar(times[1::3], *cooled[:, 1::3], **look, fillstyle="none")
+        if k != 1:
+            shape.errorbar(times[1::3], *a2[:, 1::3], **look, fillstyle="none")
+    cooling.plot(times, haff(times, normal), color=colors()[0], zorder=0)
+    cooling.plot(times, lines["closure"], color=colors()[3], zorder=0)
+    cooling.axhline(lines["rest"], color="0.6", linestyle=":", zorder=0)
+    cooling.set(xscale="log", yscale="log", xlabel=r"$\nu_0 t$", ylabel=r"$\theta/\theta_0$")
+    loss.plot(colder, lines["losses"], color=colors()[3])
+    loss.axhline(normal**2, color=colors()[0])
     loss.axhline(1.0, color="0.6", linestyle=":")
     loss.set(
         xscale="log",
         xlabel=r"$\theta/\theta_0$",
         ylabel=r"$\langle v^3\varepsilon^2\rangle/\langle v^3\rangle$",
     )
-    shape.axhline(sonine(law.normal), color=fg.COLORS[0], zorder=0)
+    shape.axhline(sonine(normal), color=colors()[0], zorder=0)
     shape.set(xscale="log", xlabel=r"$\nu_0 t$", ylabel="$a_2$")
     for axes, name in ((cooling, "a"), (loss, "b"), (shape, "c")):
         fg.letter(axes, f"({name})", left=axes is shape)
     figure.legend(*cooling.get_legend_handles_labels(), loc="outside upper center", ncols=4)
-    figure.savefig(path, dpi=200)
+    return figure
 
 
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else "cooling.png")
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "cooling.png"))

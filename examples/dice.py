@@ -7,9 +7,11 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 import restitution as rs
 from restitution import figures as fg
+from restitution.figures.style import SITE, Style, colors, ink
 
 SIDE, HEIGHT = 1e-2, 0.1
 """Side of the square and height of the fall, in m."""
@@ -77,9 +79,14 @@ def table(particles: int = 1000, rows: int | None = None) -> str:
     return "\n".join(lines)
 
 
-@fg.styled
 def draw(path: Path, particles: int = 1000) -> None:
     """Draw the intervals beside the counts, and their width over ε_n."""
+    for style in SITE:
+        _draw(particles, style=style).savefig(path.with_stem(path.stem + style[4:]), dpi=200)
+
+
+@fg.styled
+def _draw(particles: int, *, style: Style | None = None) -> Figure:
     figure, [[left, right]] = fg.panels(fg.PAGE, 2.9, 1, 2)
     ratios = np.array(list(COUNTS))
     share, throws = np.array(list(COUNTS.values())).T
@@ -88,9 +95,9 @@ def draw(path: Path, particles: int = 1000) -> None:
         found = np.array([rests(cuboid(r), normal, friction, particles) for r in COUNTS])
         name = f"$\\varepsilon_n = {normal:g}$, $\\mu = {friction:g}$"
         ends = found[:, 0], found.sum(axis=1)
-        left.vlines(ratios + shift, *ends, color=fg.COLORS[color], linewidth=3, alpha=0.7, label=name)
+        left.vlines(ratios + shift, *ends, color=colors()[color], linewidth=3, alpha=0.7, label=name)
     error = np.sqrt(share * (1 - share) / throws)
-    left.errorbar(ratios, share, error, fmt="ko", markersize=3, label="published", zorder=3)
+    left.errorbar(ratios, share, error, fmt="o", color=ink(), markersize=3, label="published", zorder=3)
     left.set(xlabel="height/side", ylabel="share on a square face", ylim=(0.0, 1.1))
     left.legend(loc="upper right")
     fg.letter(left, "(a)", left=True)
@@ -100,4 +107,4 @@ def draw(path: Path, particles: int = 1000) -> None:
     right.set(xlabel=r"$\varepsilon_n$", ylabel="share that is undecided", ylim=(0.0, 1.1))
     right.legend(loc="upper right")
     fg.letter(right, "(b)", left=True)
-    figure.savefig(path, dpi=200)
+    return figure

@@ -21,6 +21,7 @@ from matplotlib.ticker import NullFormatter
 import restitution as rs
 from restitution import figures as fg
 from restitution import fit
+from restitution.figures.style import SITE, Style, colors, ink
 
 RADIUS, ELONGATION, NORMAL, HEIGHT, GRAVITY = 3e-3, 0.1, 0.98, 0.06, 9.81
 RELEASE_SPEED = float(np.sqrt(2 * GRAVITY * (HEIGHT - RADIUS - ELONGATION * RADIUS / np.pi)))
@@ -227,13 +228,13 @@ def tables(found: Measured) -> str:
 
 
 @fg.styled
-def draw(found: Measured) -> Figure:
+def draw(found: Measured, *, style: Style | None = None) -> Figure:
     """Draw the six panels."""
     figure, ((flanks, law, fast), (distance, dependence, slow)) = fg.panels(fg.PAGE, 4.5, 2, 3)
     v = found.slopes.table["velocity"].to_numpy()
     x = np.sqrt(np.maximum((RELEASE_SPEED / v) ** 2 - 1.0, 0.0))
     fitted = (v >= GROWTH[0]) & (v <= GROWTH[1])
-    for side, symbol, color, marker in (("above", "a", fg.COLORS[1], "o"), ("below", "b", fg.COLORS[0], "s")):
+    for side, symbol, color, marker in (("above", "a", colors()[1], "o"), ("below", "b", colors()[0], "s")):
         y = found.slopes.table[side].to_numpy()
         low, high = np.quantile(found.slopes.resampled[side].to_numpy(), [0.025, 0.975], axis=0)
         power = found.law(side)
@@ -258,9 +259,9 @@ def draw(found: Measured) -> Figure:
     for axes in (flanks, distance, dependence):
         fg.plain_log(axes, (0.03, 0.1, 0.3, 1.0))
         axes.set_xlim(0.03, 1.06)
-        axes.axvspan(0.03, found.end, color="0.9", linewidth=0)
+        axes.axvspan(0.03, found.end, color=ink(0.1), linewidth=0)
         axes.set_xlabel("impact velocity $v$ (m/s)")
-    law.axvspan(float(np.sqrt((RELEASE_SPEED / found.end) ** 2 - 1)), 40, color="0.9", linewidth=0)
+    law.axvspan(float(np.sqrt((RELEASE_SPEED / found.end) ** 2 - 1)), 40, color=ink(0.1), linewidth=0)
     for axes, speed in ((fast, 0.4), (slow, 0.1)):
         _density(axes, found, speed)
     for axes, text in zip((flanks, law, fast, distance, dependence, slow), "abcdef", strict=True):
@@ -268,14 +269,16 @@ def draw(found: Measured) -> Figure:
     return figure
 
 
-_PARTS = (("down", "on the way down", fg.COLORS[0], "--"), ("returned", "returned", fg.COLORS[1], "-."))
+_PARTS = (("down", "on the way down", 0, "--"), ("returned", "returned", 1, "-."))
 
 
 def _distance(axes: Axes, found: Measured, v: np.ndarray[Any, np.dtype[np.float64]]) -> None:
-    axes.plot(v, found.slopes.table["ks_distance"], color=fg.COLORS[2], label="all impacts")
+    axes.plot(v, found.slopes.table["ks_distance"], color=colors()[2], label="all impacts")
     for part, label, color, style in _PARTS:
         table = found.parts[part][0].table
-        axes.plot(table["velocity"], table["ks_distance"], color=color, linestyle=style, label=label)
+        axes.plot(
+            table["velocity"], table["ks_distance"], color=colors()[color], linestyle=style, label=label
+        )
     axes.axhline(0.03, color="0.4", linewidth=0.7, linestyle=":")
     axes.set_ylim(0, 0.32)
     axes.set_ylabel("distance $D$ of the fit")
@@ -285,14 +288,14 @@ def _distance(axes: Axes, found: Measured, v: np.ndarray[Any, np.dtype[np.float6
 def _dependence(axes: Axes, found: Measured, v: np.ndarray[Any, np.dtype[np.float64]]) -> None:
     first = found.dependence.isel(lag=0)
     values, error = first.autocorrelation.to_numpy(), first.autocorrelation_error.to_numpy()
-    fg.line(axes, v, values, error, color=fg.COLORS[5], label=r"lag 1 of $\varepsilon$")
-    swaps = [("all impacts", fg.COLORS[2], "-", found.dependence)]
+    fg.line(axes, v, values, error, color=colors()[5], label=r"lag 1 of $\varepsilon$")
+    swaps = [("all impacts", 2, "-", found.dependence)]
     swaps += [(label, color, style, found.parts[part][1]) for part, label, color, style in _PARTS]
     for label, color, style, data in swaps:
         speed = data["velocity"].to_numpy()
         values, error = data.alternation.to_numpy(), data.alternation_error.to_numpy()
         seen = (speed < 0.4) | (label != "returned")  # few return to higher speeds
-        fg.line(axes, speed[seen], values[seen], error[seen], color=color, linestyle=style)
+        fg.line(axes, speed[seen], values[seen], error[seen], color=colors()[color], linestyle=style)
     for level in (0.0, 0.5):
         axes.axhline(level, color="0.4", linewidth=0.7, linestyle=":")
     axes.set_ylim(-0.75, 1.15)
@@ -306,14 +309,14 @@ def _density(axes: Axes, found: Measured, speed: float) -> None:
     edges = np.linspace(low, high, 61)
     count, scale = np.histogram(x, edges)[0], 1.0 / (x.size * (edges[1] - edges[0]))
     error = scale * np.sqrt(count)
-    fg.histogram(axes, edges, scale * count, error, fmt="o", color="0.35", markersize=1.6)
+    fg.histogram(axes, edges, scale * count, error, fmt="o", color=ink(0.65), markersize=1.6)
     points = np.unique(np.append(np.linspace(low, high, 400), NORMAL))
     one = found.boots[speed]["asymmetric Laplace"]
-    axes.fill_between(points, *one.band(points), color=fg.COLORS[1], alpha=0.4, linewidth=0)
+    axes.fill_between(points, *one.band(points), color=colors()[1], alpha=0.4, linewidth=0)
     for name, color, style in (
-        ("asymmetric Laplace", fg.COLORS[1], "-"),
-        ("asymmetric power", fg.COLORS[0], "--"),
-        ("cusp mixture", fg.COLORS[2], ":"),
+        ("asymmetric Laplace", colors()[1], "-"),
+        ("asymmetric power", colors()[0], "--"),
+        ("cusp mixture", colors()[2], ":"),
     ):
         axes.plot(points, found.boots[speed][name].fit.pdf(points), color=color, linestyle=style, label=name)
     top = scale * float(count.max())
@@ -353,7 +356,9 @@ def main(out: Path, particles: int = 4000) -> None:
     found = measure(particles)
     out.mkdir(parents=True, exist_ok=True)
     text = caption(found)
-    fg.save(draw(found), out / "fits", "The exponential flanks of p(ε | v)", text)
+    for style in SITE:
+        figure = draw(found, style=style)
+        fg.save(figure, out / f"fits{style[4:]}.png", "The exponential flanks of p(ε | v)", text)
     (out / "fits.txt").write_text(text + "\n", encoding="utf-8")
     (out / "fits.md").write_text(tables(found), encoding="utf-8")
 

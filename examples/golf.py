@@ -10,10 +10,12 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
 import restitution as rs
 from restitution import figures as fg
+from restitution.figures.style import SITE, Style, colors, ink
 from restitution.laws import Law
 
 RADIUS, MASS = 21.3e-3, 45.9e-3
@@ -122,7 +124,7 @@ def first_impacts(axes: Axes) -> None:
     angle = np.linspace(0.0, np.pi, 720)  # not 90°, where the other ball takes over
     lift = RADIUS * (1.0 + np.abs(np.cos(angle)))
     speed = np.sqrt(2.0 * GRAVITY * (HEIGHT - lift))
-    for spin, color, marker in zip(SPINS, fg.COLORS, fg.MARKERS, strict=False):
+    for spin, color, marker in zip(SPINS, colors(), fg.MARKERS, strict=False):
         line = restitution(smooth, angle, speed, np.full(angle.shape, spin))
         line[line < -1.0] = np.nan  # the contact would open
         line[359] = np.nan
@@ -130,7 +132,7 @@ def first_impacts(axes: Axes) -> None:
         for law, filled in ((smooth, True), (rs.Coulomb(normal=NORMAL, friction=0.2), False)):
             found = drop(law, spin, 60, 1).isel(impact=0)
             met = np.degrees(found.release_angle + spin * found.time) % 180.0
-            face = color if filled else "white"
+            face = color if filled else "none"
             label = f"{spin:.0f} rad/s" if filled else None
             axes.plot(met, found.restitution, marker, color=color, mfc=face, mew=0.6, ms=2.6, label=label)
     axes.axhline(-1.0, color="0.5", lw=0.6, ls="--")
@@ -144,17 +146,17 @@ def all_impacts(axes: Axes) -> None:
     """Draw ε of the first impacts against |ω|R/|v|, which E_rot/E_tot tells of a smooth body."""
     ratio = np.linspace(0.0, 6.0, 601)
     highest, least, lowest = extremes(ratio)
-    axes.plot(ratio, highest, "k")
-    axes.plot(ratio[ratio < 1.0], least[ratio < 1.0], "k")
-    axes.plot(ratio[ratio > 1.0], lowest[ratio > 1.0], "k")
-    for spin, color, marker in zip(SPINS[1:], fg.COLORS[1:], fg.MARKERS[1:], strict=False):
+    axes.plot(ratio, highest, color=ink())
+    axes.plot(ratio[ratio < 1.0], least[ratio < 1.0], color=ink())
+    axes.plot(ratio[ratio > 1.0], lowest[ratio > 1.0], color=ink())
+    for spin, color, marker in zip(SPINS[1:], colors()[1:], fg.MARKERS[1:], strict=False):
         found = drop(rs.Frictionless(normal=NORMAL), spin, 400, 4)
         share = found.rotational_fraction.values
         turning = np.sqrt(share / (1.0 - share) / 1.4)
         axes.plot(turning.ravel(), found.restitution.values.ravel(), marker, color=color, ms=1.5, mew=0.0)
     for level, text in ((2.0, "+2"), (-4.0, "−4")):
         axes.axhline(level, color="0.5", lw=0.6, ls=":")
-        axes.text(5.9, level + 0.1, text, ha="right", va="bottom", color="0.3")
+        axes.text(5.9, level + 0.1, text, ha="right", va="bottom", color=ink(0.7))
     axes.axhline(-1.0, color="0.5", lw=0.6, ls="--")
     axes.text(5.9, -0.9, "falling", ha="right", va="bottom")
     axes.text(5.9, -1.15, "rising", ha="right", va="top")
@@ -164,13 +166,18 @@ def all_impacts(axes: Axes) -> None:
     fg.letter(axes, "(b)")
 
 
-@fg.styled
 def draw(path: Path) -> None:
     """Draw both panels."""
+    for style in SITE:
+        _draw(style=style).savefig(path.with_stem(path.stem + style[4:]), dpi=200)
+
+
+@fg.styled
+def _draw(*, style: Style | None = None) -> Figure:
     figure, [[left, right]] = fg.panels(fg.PAGE, 2.9, 1, 2)
     first_impacts(left)
     all_impacts(right)
-    figure.savefig(path, dpi=200)
+    return figure
 
 
 if __name__ == "__main__":

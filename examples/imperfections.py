@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 import restitution as rs
 from restitution import figures as fg
+from restitution.figures.style import SITE, Style
 from restitution.papers.estimate import in_windows
 
 Array = npt.NDArray[np.float64]
@@ -106,7 +107,7 @@ def on_the_line(elongation: float, law: rs.laws.Law) -> tuple[float, float]:
 
 
 @fg.styled
-def draw(found: dict[str, Array]) -> Figure:
+def draw(found: dict[str, Array], *, style: Style | None = None) -> Figure:
     """Draw the share of roughness over L/R and the mean height, at each speed."""
     figure, panels = fg.panels(fg.PAGE, 5.8, 2, 2, sharex=True, sharey=True)
     value, error = share(found)
@@ -117,9 +118,9 @@ def draw(found: dict[str, Array]) -> Figure:
             for j in range(y.size):
                 text = f"{value[i, j, k]:.2f}\n±{max(error[i, j, k], 0.005):.2f}"
                 color = "w" if abs(value[i, j, k] - 0.5) > 0.35 else "k"
-                axes.text(x[i], y[j], text, ha="center", va="center", fontsize=6, color=color).set_bbox(
-                    {"facecolor": image.cmap(value[i, j, k]), "edgecolor": "none", "pad": 0.5}
-                )
+                axes.text(
+                    x[i], y[j], text, ha="center", va="center", fontsize="x-small", color=color
+                ).set_bbox({"facecolor": image.cmap(value[i, j, k]), "edgecolor": "none", "pad": 0.5})
         ends = axes.axis()
         line = np.linspace(*ends[:2], 50)
         axes.plot(line, np.log10(1e6 * RADIUS * 10 ** (2 * line) / (8 * np.sqrt(2))), "k--", zorder=1.5)
@@ -127,7 +128,7 @@ def draw(found: dict[str, Array]) -> Figure:
         axes.set_xticks(x, [f"{e:g}" for e in ELONGATIONS])
         axes.set_yticks(y, [f"{1e6 * h:g}" for h in HEIGHTS])
         axes.minorticks_off()
-        axes.set_title(f"{SPEEDS[k]:g} m/s", fontsize=8)
+        axes.set_title(f"{SPEEDS[k]:g} m/s", fontsize="medium")
     for axes in panels[1]:
         axes.set_xlabel("$L/R$")
     for row in panels:
@@ -154,4 +155,6 @@ def table(found: dict[str, Array]) -> str:
 
 
 if __name__ == "__main__":
-    draw(measure()).savefig(Path(sys.argv[1]), dpi=200)
+    measured, path = measure(), Path(sys.argv[1])
+    for style in SITE:
+        draw(measured, style=style).savefig(path.with_stem(path.stem + style[4:]), dpi=200)

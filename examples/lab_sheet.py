@@ -1,7 +1,7 @@
 """Draw what a student should get: docs/images/lab-sheet.png.
 
-Run ``python examples/lab_sheet.py OUT`` to write ``lab-sheet.png`` and ``lab-sheet.pdf`` into the folder OUT:
-a simulated table-tennis ball that is not quite round, timed with an error of 20 µs.
+Run ``python examples/lab_sheet.py OUT`` to write ``lab-sheet.png``, and ``lab-sheet-dark.png`` for the dark,
+into the folder OUT: a simulated table-tennis ball that is not quite round, timed with an error of 20 µs.
 """
 
 import sys
@@ -12,6 +12,7 @@ import xarray as xr
 
 import restitution as rs
 from restitution import figures as fg
+from restitution.figures.style import SITE
 
 ERROR = 20e-6
 
@@ -30,8 +31,10 @@ def main(out: Path) -> None:
     """Write the figure."""
     out.mkdir(parents=True, exist_ok=True)
     data, fit = measured()
-    figure = rs.flight.figure(data, fit)
-    fg.save(figure, out / "lab-sheet", "Lab sheet", "ε against v of a ball that is not quite round")
+    for style in SITE:
+        figure = rs.flight.figure(data, fit, style=style)
+        text = "ε against v of a ball that is not quite round"
+        fg.save(figure, out / f"lab-sheet{style[4:]}.png", "Lab sheet", text)
 
 
 if __name__ == "__main__":

@@ -10,10 +10,12 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import restitution as rs
 from restitution import figures as fg
+from restitution.figures.style import SITE, Style, colors
 
 RADIUS, GRAVITY = 3e-3, 9.81
 IMPACTS = 1000
@@ -129,7 +131,6 @@ def table(particles: int = 5000, seeds: int = 8) -> str:
     return "\n".join(lines)
 
 
-@fg.styled
 def draw(path: Path, particles: int = 100_000) -> None:
     """Draw the density of ε at every speed, and some particles that are locked."""
     found = rs.statistics(
@@ -143,6 +144,12 @@ def draw(path: Path, particles: int = 100_000) -> None:
     )
     data = drop(500)
     velocity = data.impact_velocity.to_numpy()
+    for style in SITE:
+        _draw(found, velocity, style=style).savefig(path.with_stem(path.stem + style[4:]), dpi=200)
+
+
+@fg.styled
+def _draw(found: xr.Dataset, velocity: Floats, *, style: Style | None = None) -> Figure:
     first, last = locked(velocity)
     figure, [[left, right]] = fg.panels(fg.PAGE, 2.9, 1, 2)
     mesh = fg.population(left, SPEEDS, RESTITUTIONS, found["restitution_count"].to_numpy())
@@ -155,7 +162,7 @@ def draw(path: Path, particles: int = 100_000) -> None:
     in_pairs = np.abs(velocity[each, start + 1] / velocity[each, start] - 1.0) > 0.1
     order = np.argsort(-climb)
     shown = np.concatenate([order[~in_pairs[order]][:2], order[in_pairs[order]][:1]])
-    for particle, color in zip(shown, fg.COLORS, strict=False):
+    for particle, color in zip(shown, colors(), strict=False):
         early, late = slice(0, first[particle] + 1), slice(last[particle], None)
         for part in (early, late):
             number = np.arange(IMPACTS)[part]
@@ -166,7 +173,7 @@ def draw(path: Path, particles: int = 100_000) -> None:
     right.set(xlim=(0, IMPACTS), ylim=(0.0, 0.3), xlabel="number of the impact")
     right.set_ylabel("impact velocity $v$ (m/s)")
     fg.letter(right, "(b)", left=False)
-    figure.savefig(path, dpi=200)
+    return figure
 
 
 if __name__ == "__main__":

@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.stats import wasserstein_distance
 
 import restitution as rs
 from restitution import figures as fg
+from restitution.figures.style import SITE, Style, colors, ink
 
 DATA = Path(__file__).parents[1] / "docs" / "data"
 Floats = NDArray[np.float64]
@@ -216,28 +218,34 @@ def table(share: int = 1) -> str:
 BODIES = {"ellipse": "ellipse in a plane", "cube": "cube in space"}
 
 
-@fg.styled
 def draw(path: Path) -> None:
     """Draw measured ε against predicted, and the densities of both."""
+    both = {name: judge(name)[1] for name in BODIES}
+    for style in SITE:
+        _draw(both, style=style).savefig(path.with_stem(path.stem + style[4:]), dpi=200)
+
+
+@fg.styled
+def _draw(both: dict[str, Any], *, style: Style | None = None) -> Figure:
     figure, axes = fg.panels(fg.PAGE, 5.4, 2, 2)
     for row, (name, letters) in zip(axes, {"ellipse": "ab", "cube": "cd"}.items(), strict=True):
-        found = judge(name)[1]
+        found = both[name]
         measured, best = found["measured"], "`Coulomb`, Poisson"
         ends = measured.min() - 0.05, measured.max() + 0.05
         row[0].plot(ends, ends, color="0.6", linewidth=0.8, zorder=0)
-        for law, color in (("`Frictionless`", fg.COLORS[1]), (best, fg.COLORS[0])):
+        for law, color in (("`Frictionless`", colors()[1]), (best, colors()[0])):
             row[0].plot(found[law], measured, ".", markersize=2.5, color=color, label=law.replace("`", ""))
         row[0].set(
             xlabel=r"predicted $\varepsilon$", ylabel=r"measured $\varepsilon$", ylim=(ends[0], ends[1] + 0.1)
         )
         row[0].legend(loc="upper left", markerscale=3)
         edges = np.linspace(*ends, 36 if len(measured) > 500 else 19)
-        row[1].hist(measured, edges, density=True, color="0.85", label=f"measured, {BODIES[name]}")
+        row[1].hist(measured, edges, density=True, color=ink(0.2), label=f"measured, {BODIES[name]}")
         for law, color in (("`Frictionless`", 1), (best, 0), (SCATTERED, 2)):
             label = "Coulomb, $\\varepsilon_n$ scattered" if law == SCATTERED else law.replace("`", "")
-            row[1].hist(found[law], edges, density=True, histtype="step", color=fg.COLORS[color], label=label)
+            row[1].hist(found[law], edges, density=True, histtype="step", color=colors()[color], label=label)
         row[1].set(xlabel=r"$\varepsilon$", ylabel=r"$p(\varepsilon)$")
         row[1].legend(loc="upper left", fontsize="x-small")
         for one, letter in zip(row, letters, strict=True):
             fg.letter(one, f"({letter})", left=False)
-    figure.savefig(path, dpi=200)
+    return figure

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 import restitution as rs
 from restitution import figures as fg
 from restitution.bodies import GRADES, ROUGHNESS, Body
+from restitution.figures.style import SITE, Style, colors, column, ink
 
 Array = npt.NDArray[np.float64]
 
@@ -79,18 +80,18 @@ def scatter(body: Body) -> tuple[float, float, float]:
 
 
 @fg.styled
-def draw() -> Figure:
+def draw(*, style: Style | None = None) -> Figure:
     """Draw the scatter of the last ε against the out-of-roundness."""
     deviations = DIAMETER * np.geomspace(3e-5, 3e-2, 16)
     heard, true, closed = np.array([scatter(rs.from_roundness(DIAMETER, t)) for t in deviations]).T
-    figure, [[axes]] = fg.panels(fg.COLUMN, 3.0)
-    axes.loglog(1e6 * deviations, true, marker="s", color=fg.COLORS[1], label="Eq. 1")
-    axes.loglog(1e6 * deviations, heard, marker="o", color=fg.COLORS[0], label="times of flight")
-    axes.loglog(1e6 * deviations, closed, "--", color="0.3", label="closed form, angles independent")
+    figure, [[axes]] = fg.panels(*column(3.0))
+    axes.loglog(1e6 * deviations, true, marker="s", color=colors()[1], label="Eq. 1")
+    axes.loglog(1e6 * deviations, heard, marker="o", color=colors()[0], label="times of flight")
+    axes.loglog(1e6 * deviations, closed, "--", color=ink(0.7), label="closed form, angles independent")
     v, last = np.sqrt(2.0 * GRAVITY * DROP), IMPACTS - 1
     slope = 4.0 * (1.0 + NORMAL) * NORMAL * (v * NORMAL**last) ** 2 / (0.4 * (DIAMETER / 2.0) ** 2) / GRAVITY
     axes.axvline(1e6 / slope, color="0.6", linewidth=0.7)
-    axes.text(1e6 / slope, 3e-9, " K = 1", fontsize=7)
+    axes.text(1e6 / slope, 3e-9, " K = 1", fontsize="small")
     axes.set_xlabel("out-of-roundness (µm)")
     axes.set_ylabel(r"standard deviation of $\varepsilon$ at 0.5 m/s")
     axes.legend()
@@ -179,9 +180,15 @@ def tables() -> dict[str, str]:
 def main(out: Path) -> None:
     """Write figures and tables."""
     out.mkdir(parents=True, exist_ok=True)
-    fg.save(draw(), out / "roundness", "Roundness", "Scatter of ε against the out-of-roundness")
-    fg.save(budget().figure(), out / "budget", "Error budget", "Errors of ε of a glass bead by source")
-    fg.save(required().figure(), out / "required", "Required roundness", "Error of ε and roundness")
+    errors, needed = budget(), required()
+    for style in SITE:
+        drawn = {
+            "roundness": (draw(style=style), "Scatter of ε against the out-of-roundness"),
+            "budget": (errors.figure(style=style), "Errors of ε of a glass bead by source"),
+            "required": (needed.figure(style=style), "Error of ε and roundness"),
+        }
+        for name, (figure, text) in drawn.items():
+            fg.save(figure, out / f"{name}{style[4:]}.png", name.title(), text)
     text = "\n".join(f"{name}\n\n{table}" for name, table in tables().items())
     (out / "roundness.md").write_text(text, encoding="utf-8")
 

@@ -172,6 +172,7 @@ test("a file that is none is refused, with the line and the reason", () => {
   refused("a.csv", "x,y,z,r\n0,0,0,1\n0,0,0\n", /line 3: .*4 values/);
   refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", /line 4: f 1 2 4: must be f with the numbers of vertices/);
   refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", /not closed at 3 edges/);
+  refused("x.obj", "hello world\n", /^Error: x\.obj: has no triangle; must be a mesh as OBJ, with lines v x y z and f 1 2 3/);
   refused("a.stl", "solid\nvertex 0 0\n", /line 2: vertex 0 0: must be vertex x y z/);
 });
 

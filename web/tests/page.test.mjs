@@ -239,6 +239,21 @@ test("the bounce plays, stops, and is stepped through by keys", async () => {
   await close();
 });
 
+test("a mesh without a unit that would be metres large is read in mm by a button", async () => {
+  const { page, close } = await open(SMALL);
+  await drop(page, "corner.obj", "v 0 0 0\nv 6 0 0\nv 0 7 0\nv 0 0 8\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const mend = page.locator("#problem").getByRole("button", { name: "Read it in mm" });
+  await mend.waitFor();
+  assert.match(await page.locator("#problem").textContent(), /^corner\.obj: a body of [\d.]+ m\./);
+  await mend.click();
+  await page.waitForFunction(() => location.hash.includes("shape=mesh"));
+  assert.equal(await page.locator("#problem").isVisible(), false);
+  assert.match(await hashOf(page), /0\.006/);
+  await drop(page, "x.obj", "hello world\n");
+  await page.getByText("x.obj: has no triangle").waitFor();
+  await close();
+});
+
 test("files: PNG, SVG, CSV, TOML, Python", async () => {
   const { page, close } = await open(SMALL);
   const file = async (button) => {
@@ -254,9 +269,14 @@ test("files: PNG, SVG, CSV, TOML, Python", async () => {
     const png = await file("png");
     assert.equal(png.content.subarray(1, 4).toString(), "PNG", what);
     assert.ok(png.content.length > 2000, what);
-    if (what === "stage") continue;
+    const wide = png.content.readUInt32BE(16);
+    if (what === "stage") {
+      assert.equal(wide, 3 * (await page.locator("#stage").evaluate((it) => it.clientWidth)));
+      continue;
+    }
     const { name, content } = await file("svg");
     assert.equal(name, `${what}.svg`);
+    assert.equal(wide, 3 * Number(/width="([\d.]+)"/.exec(content.toString())[1]), what);
     const wrong = await page.evaluate((text) => new DOMParser().parseFromString(text, "image/svg+xml").querySelector("parsererror")?.textContent, content.toString());
     assert.equal(wrong, undefined);
     assert.doesNotMatch(content.toString(), /NaN|Infinity|undefined/, what);

@@ -28,11 +28,11 @@ from restitution.figures.check import check_drawable
 from restitution.figures.pieces import line, plain_log, population, population_bar
 from restitution.figures.style import (
     COLORS,
-    COLUMN,
     MARKERS,
     PAGE,
     Style,
     colors,
+    column,
     ink,
     letter,
     panels,
@@ -88,7 +88,7 @@ def map(
     found = counted("found", found, (f"{of}_count", "velocity_edges", f"{of}_edges"))
     if not found[f"{of}_count"].any():
         raise ParameterError(Problem(f"found.{of}_count", ": every bin is empty; must hold an impact"))
-    figure, [[axes]] = panels(COLUMN, 2.7)
+    figure, [[axes]] = panels(*column(2.7))
     across, up = (found[f"{name}_edges"].to_numpy() for name in ("velocity", of))
     population_bar(figure, population(axes, across, up, found[f"{of}_count"].to_numpy()), axes)
     axes.set_xlabel(VELOCITY)
@@ -141,7 +141,7 @@ def densities(
         raise ParameterError(wrong("velocities", velocities, allowed))
     if exact is not None and not isinstance(exact, FirstImpact):
         raise ParameterError(wrong("exact", exact, "what restitution.analytic.first_impact returns, or None"))
-    figure, [[axes]] = panels(COLUMN, 2.7)
+    figure, [[axes]] = panels(*column(2.7))
     many = np.ndim(velocities) > 0
     for k, v in enumerate(speeds):
         if isinstance(found, xr.Dataset):
@@ -386,7 +386,7 @@ def trajectory(
         when, height = _heights(time, fall, rise, gravity * float(np.cos(incline)), start)
     if not np.all(np.abs(height) <= FARTHEST):
         raise ParameterError(Problem("data", ": heights are no finite numbers; must be those of a run"))
-    figure, [[path], [middle], [below]] = panels(COLUMN, 4.2, 3, 1, sharex=True, height_ratios=(4, 3, 3))
+    figure, [[path], [middle], [below]] = panels(*column(4.2), 3, 1, sharex=True, height_ratios=(4, 3, 3))
     path.plot(when, 1e3 * height)
     path.set_ylabel("height (mm)")
     path.set_ylim(bottom=0.0)
@@ -417,7 +417,7 @@ def _over_velocity(
     found: xr.Dataset | Mapping[str, xr.Dataset], name: str, label: str
 ) -> tuple[Figure, Axes]:
     """Draw one of the quantities by velocity of one or several sets of statistics."""
-    figure, [[axes]] = panels(COLUMN, 2.7)
+    figure, [[axes]] = panels(*column(2.7))
     _moments(axes, found, name, marked=True)
     low, high = axes.get_xlim()
     steps = (step * 10.0**power for power in range(-9, 9) for step in (1, 2, 5))

@@ -40,6 +40,8 @@ _COLORMAP_ON_DARK = LinearSegmentedColormap.from_list(
 
 Style: TypeAlias = Literal["paper", "page", "slides", "paper-dark", "page-dark", "slides-dark"]
 """Purposes of a figure: a journal, a page on a screen, or slides; the last three on a dark ground."""
+SITE: tuple[Style, ...] = ("page", "page-dark")
+"""Styles of a figure of the site: that for the dark stands beside the other as ``NAME-dark.png``."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,7 @@ class _Look:
     line: float  # width over that in a journal
     family: str
     mathematics: str
+    wide: bool = False  # is a column as wide as the page?
     dark: bool = False
 
     @property
@@ -104,7 +107,7 @@ _MAJOR = {"width": 0.6, "size": 3.5}
 _MINOR = {"width": 0.4, "size": 2.0}
 _LIGHT = {
     "paper": _Look(1.0, 9.0, 1.0, "STIXGeneral", "stix"),
-    "page": _Look(1.25, 10.5, 1.25, "DejaVu Sans", "dejavusans"),
+    "page": _Look(1.25, 10.5, 1.25, "DejaVu Sans", "dejavusans", wide=True),
     "slides": _Look(1.8, 18.0, 2.2, "DejaVu Sans", "dejavusans"),
 }
 _LOOKS = _LIGHT | {f"{name}-dark": replace(look, dark=True) for name, look in _LIGHT.items()}
@@ -197,6 +200,11 @@ def _named(name: object) -> _Look:
     if not isinstance(name, str) or name not in _LOOKS:
         raise ParameterError(wrong("style", name, f"one of {', '.join(map(repr, _LOOKS))}"))
     return _LOOKS[name]
+
+
+def column(height: float) -> tuple[float, float]:
+    """Return the size of a figure that fills a column: that of a journal, or the only one of a page."""
+    return (PAGE, 1.25 * height) if _current.get().wide else (COLUMN, height)
 
 
 @styled

@@ -100,11 +100,11 @@ class ErrorBudget(Content):
             "paper", "page" or "slides", with "-dark" for a dark ground.
         """
         from restitution.figures.pieces import plain_log
-        from restitution.figures.style import COLUMN, colors, ink, panels, styled
+        from restitution.figures.style import colors, column, ink, panels, styled
 
         @styled
         def drawn(*, style: Style | None) -> Figure:
-            figure, [[axes]] = panels(COLUMN, 3.0)
+            figure, [[axes]] = panels(*column(3.0))
             speed = self.data.impact_velocity.values
             total = self.data.sel(source="total")
             least = _DRAWN * float(np.hypot(total.standard_deviation, total.bias).max())
@@ -248,11 +248,11 @@ class RequiredRoundness(Content):
         style : str, optional
             "paper", "page" or "slides", with "-dark" for a dark ground.
         """
-        from restitution.figures.style import COLUMN, colors, ink, panels, styled
+        from restitution.figures.style import colors, column, ink, panels, styled
 
         @styled
         def drawn(*, style: Style | None) -> Figure:
-            figure, [[axes]] = panels(COLUMN, 3.0)
+            figure, [[axes]] = panels(*column(3.0))
             deviation = self.data.out_of_roundness.values * 1e6
             names = {"single": "one impact", "mean": "mean of a run", "fit": r"fitted $\varepsilon^n(v)$"}
             for number, (name, label) in enumerate(names.items()):

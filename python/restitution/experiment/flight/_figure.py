@@ -12,7 +12,7 @@ from restitution.experiment.flight._law_fit import LawFit
 from restitution.experiment.flight.series import series_of
 from restitution.figures.check import check_drawable
 from restitution.figures.pieces import line
-from restitution.figures.style import COLORS, COLUMN, Style, colors, panels, styled
+from restitution.figures.style import COLORS, Style, colors, column, panels, styled
 
 _POINTS = 200
 
@@ -63,7 +63,7 @@ def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit, style: Style 
     for fit in fits:
         if not isinstance(fit, LawFit):
             raise ParameterError(wrong("fits", fit, "fits, as flight.fit returns them"))
-    figure, [[axes]] = panels(COLUMN, 2.6)
+    figure, [[axes]] = panels(*column(2.6))
     speeds = np.concatenate(
         [one.impact_velocity.values[rows] for one, rows in zip(series, known, strict=True)]
     )

@@ -9,7 +9,7 @@ from restitution.figures.laws._measure import ELONGATIONS, LAWS, bound, coupling
 from restitution.figures.laws._words import caption, table
 from restitution.figures.report import save_with_data
 
-__all__ = ["ELONGATIONS", "LAWS", "bound", "coupling", "growth", "measure", "table", "write"]
+__all__ = ["ELONGATIONS", "LAWS", "bound", "coupling", "draw", "growth", "measure", "table", "write"]
 
 TITLE = "What the collision law does to the coefficient of restitution"
 

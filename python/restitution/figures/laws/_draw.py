@@ -10,9 +10,9 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from restitution import figures as fg
+from restitution.figures.style import Style, colors, ink
 
 _LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "-", "-", "--", ":", "-")
-_COLORS = ("#D55E00", "#000000", "#0072B2", "#56B4E9", "#009E73", "#CC79A7")
 _VELOCITY_TICKS = (0.03, 0.1, 0.3, 1.0)
 _RANGE = (0.018, 1.1)
 _LETTERS = "abcdefghijklmn"
@@ -20,13 +20,13 @@ _VELOCITY = r"impact velocity $v_G^n$ (m/s)"
 
 
 @fg.styled
-def draw(data: xr.Dataset) -> Figure:
+def draw(data: xr.Dataset, *, style: Style | None = None) -> Figure:
     """Draw what `measure` found."""
     columns = data.sizes["elongation"]
     figure, panels = fg.panels(fg.PAGE, 7.6, 4, columns)
     for k in range(columns):
         body = data.isel(elongation=k)
-        panels[0][k].set_title(rf"$L/R = {float(body['elongation']):g}$", fontsize=9.0)
+        panels[0][k].set_title(rf"$L/R = {float(body['elongation']):g}$")
         _density(panels[0][k], body)
         _by_velocity(panels[1][k], body, "deviation")
         _by_velocity(panels[2][k], body, "mean_fraction")
@@ -44,7 +44,7 @@ def draw(data: xr.Dataset) -> Figure:
     _created(panels[3][0], data["created_share"], 0.01)
     panels[3][0].set_ylim(0.0, 0.7)
     bodies = [
-        Line2D([], [], color="0.4", linestyle="none", marker=marker, label=f"$L/R = {x:g}$")
+        Line2D([], [], color=ink(0.6), linestyle="none", marker=marker, label=f"$L/R = {x:g}$")
         for marker, x in zip(fg.MARKERS, data["elongation"].to_numpy(), strict=False)
     ]
     panels[3][0].legend(handles=bodies[1:], loc="upper left", ncols=3, handlelength=0.8)
@@ -77,12 +77,16 @@ def _legend(figure: Figure, data: xr.Dataset) -> None:
     names = [str(name).replace("ε_t", r"$\varepsilon_t$") for name in data["law"].values]
     lines = [
         Line2D([], [], color=color, linestyle=style, label=name)
-        for name, color, style in zip(names, _COLORS, _LINES, strict=True)
+        for name, color, style in zip(names, map(_color, range(len(names))), _LINES, strict=True)
     ]
     lines.append(
         Line2D([], [], color="0.55", linewidth=0.8, linestyle="-.", label=r"bound, $\varepsilon_t$ = 1")
     )
     figure.legend(handles=lines, loc="outside upper center", ncols=4)
+
+
+def _color(law: int) -> str:
+    return colors()[(1, 5, 0, 4, 2, 3)[law]]
 
 
 def _density(axes: Axes, body: xr.Dataset) -> None:
@@ -91,7 +95,7 @@ def _density(axes: Axes, body: xr.Dataset) -> None:
         axes.plot(
             body["restitution"],
             density.where(density > 0),
-            color=_COLORS[law],
+            color=_color(law),
             linestyle=_LINES[law],
             drawstyle="steps-mid",
             linewidth=0.8,
@@ -107,7 +111,14 @@ def _density(axes: Axes, body: xr.Dataset) -> None:
 def _by_velocity(axes: Axes, body: xr.Dataset, name: str) -> None:
     for law in range(body.sizes["law"]):
         values, error = (body[each].isel(law=law).to_numpy() for each in (name, f"{name}_error"))
-        fg.line(axes, body["velocity"].to_numpy(), values, error, color=_COLORS[law], linestyle=_LINES[law])
+        fg.line(
+            axes,
+            body["velocity"].to_numpy(),
+            values,
+            error,
+            color=_color(law),
+            linestyle=_LINES[law],
+        )
 
 
 def _created(axes: Axes, values: xr.DataArray, least: float) -> None:
@@ -124,7 +135,7 @@ def _created(axes: Axes, values: xr.DataArray, least: float) -> None:
                     "markevery": [0, 2, 4, 7, 12, 20, 32],
                     "linewidth": 0.8,
                 }
-                axes.plot(velocity, shown, color=_COLORS[law], linestyle=_LINES[law], **look)
+                axes.plot(velocity, shown, color=_color(law), linestyle=_LINES[law], **look)
 
 
 def _bounds(axes: Axes, data: xr.Dataset) -> None:
@@ -139,6 +150,6 @@ def _bounds(axes: Axes, data: xr.Dataset) -> None:
             place,
             xycoords=axes.get_yaxis_transform(),
             va="center",
-            color="0.4",
+            color=ink(0.6),
             fontsize="small",
         )

@@ -37,7 +37,8 @@ _FLIGHT, _NEAR, _STILL = 1.1, 1.0, 1.6
 """Seconds of a film for a flight, for the slow motion on either side of an impact, and for the impact."""
 _CLOSE = 0.3
 """Of a reach: how far the body moves in the slow motion on either side."""
-_PIXELS_PER_INCH = 100
+_PIXELS_PER_INCH = 200
+"""Twice those of a screen, for fine ones: a notebook shows films at half their size."""
 _SWATCH = 40
 """Pixels of a side of the squares from which a palette takes the colours of a style."""
 _HEIGHT = 3.0
@@ -149,7 +150,9 @@ class Film:
     def _repr_html_(self) -> str:
         import base64
 
-        return f'<img alt="{self!r}" src="data:image/gif;base64,{base64.b64encode(self._gif()).decode()}">'
+        width = round(0.5 * _PIXELS_PER_INCH * self.picture(0).get_size_inches()[0])
+        content = base64.b64encode(self._gif()).decode()
+        return f'<img alt="{self!r}" width="{width}" src="data:image/gif;base64,{content}">'
 
     def _images(self) -> list[Image.Image]:
         images: list[Image.Image] = []
@@ -190,6 +193,7 @@ class Film:
     @styled
     def _palette(self, chosen: list[Image.Image], *, style: Style | None) -> Image.Image:
         """Choose the colours of all pictures: from some of them, and those of the arrows."""
+        chosen = [one.reduce(2) for one in chosen]
         width, height = chosen[0].size
         sheet = Image.new("RGB", (width, height * len(chosen) + _SWATCH))
         for k, one in enumerate(chosen):
