@@ -166,7 +166,7 @@ def test_a_required_roundness_keeps_the_error_that_was_asked_for() -> None:
 def test_materials_are_fitted_by_their_own_law() -> None:
     metal = rs.Plastic(yield_speed=0.05)
     budget = rs.error_budget(
-        ROUND, rs.Frictionless(normal=metal), drop=0.1, impacts=5, timing=1e-6, drag=None
+        ROUND, rs.Frictionless(normal=metal), drop=0.1, impacts=5, timing=1e-6, drag=None, contact_time=0.0
     )
     assert budget.data.parameter.values.tolist() == ["yield_speed"]
     assert float(budget.data.parameter_value[0]) == pytest.approx(0.05, rel=1e-6)
@@ -246,3 +246,27 @@ def test_unknown_friction_is_between_none_and_sticking() -> None:
 def test_friction_allows_balls_that_are_less_round(law: object, needed: float) -> None:
     found = rs.required_roundness(1e-3, diameter=6e-3, law=law, drop=0.1)  # type: ignore[arg-type]
     assert float(found) == pytest.approx(needed, rel=0.05)
+
+
+def test_a_contact_that_is_not_given_is_not_nothing() -> None:
+    """Neglected, 0.2 ms at 1 m/s is the bias of times with that delay; not given, it may be a plastic's."""
+    setting: dict[str, Any] = {"drop": 0.1, "impacts": 8, "particles": 50, "drag": None}
+    law, speed, times = rs.Frictionless(normal=0.9), np.sqrt(2.0 * 9.81 * 0.1), [0.0]
+    for _ in range(9):
+        times.append(times[-1] + 2e-4 * speed**-0.2 + 2.0 * 0.9 * speed / 9.81)
+        speed *= 0.9
+    heard = rs.flight.restitution(times, 1e-6, drop_height=0.1).restitution.values[:8]
+    budget = rs.error_budget(ROUND, law, contact_time=2e-4, **setting)
+    bias = budget.data.bias.sel(source="contact").values
+    assert bias == pytest.approx(heard - 0.9, rel=0.02)
+    assert "time of contact, neglected" in budget.table()
+    open_still = rs.error_budget(ROUND, law, **setting)
+    possible = rs.flight.ContactTime.possible(diameter=6e-3)
+    there = open_still.data.standard_deviation.sel(source="contact").values
+    assert there == pytest.approx(np.abs(bias) * possible.uncertainty / 2e-4, rel=0.1)
+    assert "time of contact, not given" in open_still.table()
+    known = rs.error_budget(ROUND, law, contact_time=2e-4, contact_corrected=True, **setting)
+    assert float(np.abs(known.data.bias.sel(source="contact")).max()) == 0.0
+    asked: dict[str, Any] = {"diameter": 6e-3, "law": law, "drop": 0.1, "particles": 50}
+    assert np.isnan(float(rs.required_roundness(1e-4, contact_time=2e-3, **asked)))
+    assert float(rs.required_roundness(1e-3, contact_time=0.0, **asked)) > 1e-5

@@ -14,7 +14,7 @@ BALL = rs.from_roundness(6e-3, 0.0)
 
 
 def budget(law: Any = LAW, **change: Any) -> Any:
-    setting = {"drop": 0.1, "impacts": 6, "particles": 50, "drag": None} | change
+    setting = {"drop": 0.1, "impacts": 6, "particles": 50, "drag": None, "contact_time": 0.0} | change
     return rs.error_budget(BALL, law, **setting).data
 
 

@@ -48,6 +48,12 @@ def listen(
     wall: Annotated[
         float | None, typer.Option(metavar="W", help="Thickness of the wall of a hollow ball, m.")
     ] = None,
+    contact_time: Annotated[
+        float | None, typer.Option(metavar="T", help="Time for which ball and plate touch at 1 m/s, s.")
+    ] = None,
+    contact_error: Annotated[
+        float, typer.Option(metavar="S", help="Standard error of the time of contact, s.")
+    ] = 0.0,
     doubtful: Annotated[bool, typer.Option("--doubtful", help="Take impacts that are in doubt.")] = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
@@ -80,6 +86,8 @@ def listen(
                 out_of_roundness=out_of_roundness,
                 roughness=roughness,
                 wall=wall,
+                contact_time=contact_time,
+                contact_uncertainty=contact_error,
                 doubtful=doubtful,
             )
         analysis = write(file, out, setting, replace=overwrite)

@@ -14,6 +14,7 @@ from restitution.experiment.budget._results import ErrorBudget
 from restitution.experiment.budget._rough import roughness as rough
 from restitution.experiment.budget._sources import Source
 from restitution.experiment.budget.experiment import Array, Experiment, Setting, mean_radius
+from restitution.experiment.flight.contact import ContactTime, contact_of
 from restitution.experiment.flight.drag import Drag
 from restitution.laws import Law, Material
 
@@ -33,6 +34,8 @@ def error_budget(
     roughness: float = 0.0,
     drag: Drag | Literal["sphere"] | None = "sphere",
     drag_corrected: bool = False,
+    contact_time: ContactTime | float | None = None,
+    contact_corrected: bool = False,
     particles: int = 1000,
     seed: int = 1,
 ) -> ErrorBudget:
@@ -77,6 +80,11 @@ def error_budget(
     drag_corrected : bool
         Whether drag is accounted for, as by `restitution.flight.restitution`: what remains is the standard
         deviation that the uncertainty of the drag causes. Otherwise all of it is a bias.
+    contact_time : ContactTime or float, optional
+        How long ball and plate touch at 1 m/s, in s, with its standard error. What is not given is not zero:
+        its standard error is then what it may be, as of `restitution.flight.ContactTime.possible`.
+    contact_corrected : bool
+        Whether it is accounted for, as by `restitution.flight.restitution`; otherwise it is a bias.
     particles : int
         Number of simulated drops, >= 50. A standard deviation of shape, spin or tilt is known to a part
         1/√(2 particles); what spin and tilt add is a difference of two such variances.
@@ -126,8 +134,10 @@ def error_budget(
         seed=seed,
     )
     force = _force(drag, body, setting)
-    if not isinstance(drag_corrected, bool):
-        raise ParameterError(wrong("drag_corrected", drag_corrected, "True or False"))
+    touching = contact_of(contact_time) or possible(body)
+    for name, corrected in (("drag_corrected", drag_corrected), ("contact_corrected", contact_corrected)):
+        if not isinstance(corrected, bool):
+            raise ParameterError(wrong(name, corrected, "True or False"))
     experiment = Experiment.of(law, setting)
     n = setting.impacts
     shape = _sources.shape(experiment, body)
@@ -140,9 +150,18 @@ def error_budget(
         "tilt": _sources.tilt(experiment, body, shape) if setting.tilt > 0.0 else _sources.nothing(n),
         "spin": _sources.spin(experiment, body, shape) if setting.spin > 0.0 else _sources.nothing(n),
         "drag": _sources.nothing(n) if force is None else _sources.drag(experiment, force, drag_corrected),
+        "contact": _sources.contact(experiment, touching, contact_corrected),
     }
-    data = _dataset(experiment, body, sources, force)
-    return ErrorBudget(data.assign_attrs(drag_corrected=int(drag_corrected)))
+    accounted = touching.uncertainty if contact_corrected else 0.0
+    data = _dataset(experiment, body, sources, force, accounted)
+    said = {"contact_time": touching.at_1_m_s, "contact_time_uncertainty": touching.uncertainty}
+    said |= {"contact_given": int(contact_time is not None), "contact_corrected": int(contact_corrected)}
+    return ErrorBudget(data.assign_attrs(drag_corrected=int(drag_corrected), **said))
+
+
+def possible(body: Body) -> ContactTime:
+    """Return what the time of contact may be where it is not given."""
+    return ContactTime.possible(diameter=2.0 * mean_radius(body), mass=body.mass)
 
 
 def _force(drag: object, body: Body, setting: Setting) -> Drag | None:
@@ -153,20 +172,23 @@ def _force(drag: object, body: Body, setting: Setting) -> Drag | None:
     return Drag.of_sphere(diameter=2.0 * mean_radius(body), mass=body.mass, gravity=setting.gravity)
 
 
-def weights(experiment: Experiment, *sources: Source) -> Array:
-    """Return the covariance that a fit assumes: times, g and drop, and one scatter of ε for all impacts."""
+def weights(experiment: Experiment, *sources: Source, contact: float = 0.0) -> Array:
+    """Return the covariance that a fit assumes: times, g, drop and contact, and one scatter of ε for all."""
     setting = experiment.setting
-    known = experiment.covariance(setting.timing, setting.gravity_uncertainty, setting.drop_uncertainty)
+    known = experiment.covariance(
+        setting.timing, setting.gravity_uncertainty, setting.drop_uncertainty, contact
+    )
     # Without any error all impacts have equal weight.
     scatter = max(sum(float(np.mean(np.diag(one.covariance))) for one in sources), 1e-24)
     return np.asarray(known + scatter * np.eye(experiment.speed.size))
 
 
 def _dataset(
-    experiment: Experiment, body: Body, sources: dict[str, Source], force: Drag | None
+    experiment: Experiment, body: Body, sources: dict[str, Source], force: Drag | None, contact: float
 ) -> xr.Dataset:
     n = experiment.speed.size
-    estimator, curve = experiment.fitted(weights(experiment, sources["shape"], sources["roughness"]))
+    assumed = weights(experiment, sources["shape"], sources["roughness"], contact=contact)
+    estimator, curve = experiment.fitted(assumed)
     one = {"units": "1"}
     variables: dict[str, Any] = {}
     for prefix, by, dimensions, what in (

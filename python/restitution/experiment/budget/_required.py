@@ -10,11 +10,12 @@ from pydantic import Field
 
 from restitution._internal.parameters import Allowed, Number, ParameterError, Parameters, TooLargeError
 from restitution.bodies import Body, Form, from_roundness
-from restitution.experiment.budget._error_budget import weights
+from restitution.experiment.budget._error_budget import possible, weights
 from restitution.experiment.budget._results import RequiredRoundness
 from restitution.experiment.budget._rough import roughness as rough
-from restitution.experiment.budget._sources import shape
+from restitution.experiment.budget._sources import contact, shape
 from restitution.experiment.budget.experiment import Experiment, Setting
+from restitution.experiment.flight.contact import ContactTime, contact_of
 from restitution.laws import Law, Material
 
 _ROUNDEST, _LEAST_ROUND, _STEPS = 1e-6, 0.03, 19
@@ -40,13 +41,14 @@ def required_roundness(
     wall: float | None = None,
     gravity: float = 9.81,
     roughness: float = 0.0,
+    contact_time: ContactTime | float | None = None,
     particles: int = 400,
     seed: int = 1,
 ) -> RequiredRoundness:
     """Find how round a ball must be for its shape to cause no more than an error.
 
     Balls of increasing out-of-roundness are dropped, all at the same random angles, and for each the root
-    mean square error that shape and roughness cause is taken: √(bias² + variance), over ε.
+    mean square error that shape, roughness and time of contact cause is taken: √(bias² + variance), over ε.
 
     Parameters
     ----------
@@ -70,6 +72,8 @@ def required_roundness(
     roughness : float
         Ra of the surface in m, as in `restitution.error_budget`, whose error counts too: where it alone is
         more than `precision`, no ball is round enough.
+    contact_time : ContactTime or float, optional
+        As in `restitution.error_budget`; taken to be neglected, so that its error counts too.
     particles, seed : int
         Number of simulated drops for each out-of-roundness, >= 50, and the seed.
 
@@ -102,6 +106,7 @@ def required_roundness(
     )
     experiment = Experiment.of(law, setting)
     surface = rough(experiment, ball(0.0))
+    touching = contact(experiment, contact_of(contact_time) or possible(ball(0.0)), corrected=False)
     deviations: list[float] = []
     rows: list[tuple[float, float, float]] = []
     for share in np.geomspace(_ROUNDEST, _LEAST_ROUND * 2.0 / lobes, _STEPS):
@@ -117,8 +122,8 @@ def required_roundness(
         _, curve = experiment.fitted(weights(experiment, alone, surface))
         n = setting.impacts
         # ⟨δ δᵀ⟩ with its bias.
-        bias = alone.bias + surface.bias
-        square = alone.covariance + surface.covariance + np.outer(bias, bias)
+        bias = alone.bias + surface.bias + touching.bias
+        square = alone.covariance + surface.covariance + touching.covariance + np.outer(bias, bias)
         one = 1.0 / experiment.coefficient
         fitted = curve @ square @ curve.T
         middle = float(experiment.coefficient.mean())

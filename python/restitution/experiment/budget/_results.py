@@ -21,6 +21,7 @@ _SOURCES = {
     "tilt": "plate tilt",
     "spin": "spin at release",
     "drag": "air drag",
+    "contact": "time of contact",
     "total": "all",
 }
 
@@ -32,7 +33,8 @@ class ErrorBudget(Content):
     Attributes
     ----------
     data : Dataset
-        Over ``source`` ("shape", "roughness", "timing", "gravity", "drop", "tilt", "spin", "drag", "total"):
+        Over ``source`` ("shape", "roughness", "timing", "gravity", "drop", "tilt", "spin", "drag", "contact",
+        "total"):
         ``mean_bias`` and ``mean_standard_deviation`` of the mean over a run; over ``source`` and ``impact``:
         ``bias`` and ``standard_deviation`` of one coefficient, ``fit_bias`` and ``fit_standard_deviation`` of
         the fitted ε_n at that speed; over ``source`` and ``parameter``: ``parameter_bias`` and
@@ -80,8 +82,11 @@ class ErrorBudget(Content):
         return "\n".join(lines)
 
     def _named(self, source: str) -> str:
-        neglected = source == "drag" and not self.data.attrs["drag_corrected"]
-        return _SOURCES[source] + (", neglected" if neglected else "")
+        neglected = source in ("drag", "contact") and not self.data.attrs[f"{source}_corrected"]
+        how = ", neglected" if neglected else ""
+        if source == "contact" and not self.data.attrs["contact_given"]:
+            how = ", not given"
+        return _SOURCES[source] + how
 
     def __repr__(self) -> str:
         data = self.data
@@ -153,6 +158,7 @@ _LOOKS: dict[str, tuple[int | None, float, str]] = {
     "tilt": (4, 1.0, "D"),
     "spin": (None, 0.7, "x"),
     "drag": (None, 0.45, "+"),
+    "contact": (5, 1.0, "*"),
     "total": (None, 1.0, ""),
 }
 """Number of the colour, or strength of a grey, and marker of each source."""

@@ -13,6 +13,7 @@ from restitution.drop.energy import reported_elsewhere
 from restitution.drop.release import RandomSpin
 from restitution.drop.simulate import simulate
 from restitution.experiment.budget.experiment import Array, Experiment, at, mean_radius
+from restitution.experiment.flight.contact import ContactTime
 from restitution.experiment.flight.drag import Drag, fall, launched
 from restitution.laws import Law
 
@@ -110,6 +111,13 @@ def drag(experiment: Experiment, force: Drag, corrected: bool) -> Source:
     ) / (2.0 * step)
     bias = np.zeros_like(effect) if corrected else effect
     return Source(bias, np.outer(slope, slope) * force.uncertainty**2)
+
+
+def contact(experiment: Experiment, time: ContactTime, corrected: bool) -> Source:
+    """Take the time of contact: neglected, its effect is a bias; otherwise the error of it remains."""
+    by = experiment.derivatives(experiment.measured(0.0, 0.0, 0.0, 0.0))[:, -1]
+    bias = np.zeros_like(by) if corrected else -by * time.at_1_m_s
+    return Source(bias, np.outer(by, by) * time.uncertainty**2)
 
 
 def _with_drag(experiment: Experiment, terminal: float) -> Array:

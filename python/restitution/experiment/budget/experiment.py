@@ -204,13 +204,18 @@ class Experiment:
     ) -> Array:
         """Return the covariance of ε less the law at the measured speed, shape (n, n), by standard errors."""
         given = self.measured(timing, gravity, drop, contact)
+        by = self.derivatives(given)
+        return np.asarray((by * given.variances) @ by.T)
+
+    def derivatives(self, given: Measured) -> Array:
+        """Return those of ε less the law by all numbers that are measured, in the order of `Chain`."""
         links = chain(given)
         n = self.speed.size
         # r_i = v'_i - ε_n(v_i) v_i, over v_i.
         slope = self.coefficient + self._slope * self.speed
         by = (links.after_by[:n] - slope[:, None] * links.before_by[:n]) / self.speed[:, None]
         assert by.shape == (n, n + 1 + COMMON)
-        return np.asarray((by * given.variances) @ by.T)
+        return np.asarray(by)
 
     @property
     def _slope(self) -> Array:

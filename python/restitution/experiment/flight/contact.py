@@ -41,7 +41,7 @@ class ContactTime(Parameters):
     >>> steel = {"young_modulus": 2.1e11, "poisson_ratio": 0.3}
     >>> bearing = rs.flight.ContactTime.of_spheres(diameter=6e-3, mass=8.8e-4, ball=steel, plate=steel)
     >>> f"{1e6 * bearing.at_1_m_s:.0f} µs"
-    '17 µs'
+    '21 µs'
     """
 
     at_1_m_s: Annotated[Number, Field(ge=0, le=LARGEST, description="s")]

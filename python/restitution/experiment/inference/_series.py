@@ -16,6 +16,7 @@ from restitution.drop.recorded import check_successive
 from restitution.drop.run import Run
 from restitution.drop.simulate import times_of_impacts
 from restitution.experiment.budget.experiment import mean_radius
+from restitution.experiment.flight.contact import delays
 from restitution.experiment.flight.laws import LawOfSpeed, by_parameters
 from restitution.experiment.flight.times import LARGEST
 from restitution.laws import Law
@@ -81,6 +82,8 @@ class Series:
     gravity : float
     errors : ndarray, shape (n,)
         Standard errors of the times.
+    delay : ndarray, shape (n - 1,)
+        What the standard error of the time of contact does to each flight, in s.
     known : ndarray of int, shape (k,)
         Impacts whose coefficient is known from times alone.
     speed : ndarray, shape (k,)
@@ -101,6 +104,7 @@ class Series:
     drop: float
     gravity: float
     errors: Array
+    delay: Array
     known: npt.NDArray[np.intp]
     speed: Array
     reference: float
@@ -159,11 +163,13 @@ class Series:
                 raise ParameterError(Problem(name, ": the first two times must be known, or the drop height"))
             first = up / float(form.coefficient(np.array([up]), values)[0])
         gravity = float(data.attrs["gravity"])
+        contact = float(data.attrs.get("contact_time_uncertainty", 0.0))
         drop = first**2 / (2.0 * gravity)
         one = cls(
             drop=drop,
             gravity=gravity,
             errors=errors,
+            delay=contact * np.nan_to_num(delays(np.diff(time), gravity)),
             known=known,
             speed=speed[known],
             reference=reference,
@@ -226,12 +232,14 @@ class Series:
     def noise(self, drops: int, seed: int) -> tuple[Array, Array]:
         """Draw errors of flights in s, and of ε_n in units of its scatter; (drops, n - 1) each.
 
-        The errors of the times of a series are the stated ones times one factor.
+        The errors of the times of a series are the stated ones times one factor; that of the time of contact
+        is common to all.
         """
         rng = np.random.default_rng(seed)
         factor = np.exp(_FACTOR * rng.standard_normal((drops, 1)))
         errors = np.diff(factor * self.errors * rng.standard_normal((drops, self.errors.size)), axis=1)
-        return errors, rng.standard_normal(errors.shape)
+        off = rng.standard_normal(errors.shape)
+        return errors + self.delay * rng.standard_normal((drops, 1)), off
 
     def heard(self, flight: Array, scatter: float, noise: tuple[Array, Array]) -> Drops:
         """Time drops with these flights, each so often as there is noise for it.

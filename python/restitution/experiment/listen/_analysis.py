@@ -58,6 +58,7 @@ _LAWS = ("constant", "power law", "viscoelastic", "plastic")
 
 _OR_NONE = Allowed("a finite number > 0 (SI units), or None")
 _LENGTH_OR_NONE = Allowed("a finite number >= 0 (m), or None")
+_CONTACT_OR_NONE = Allowed("a finite number >= 0 (s), or None")
 _TIME_OR_NONE = Allowed("a finite number > 0 (s), or None")
 
 
@@ -80,6 +81,9 @@ class Setting(Parameters):
         Of the ball, the second as Ra, in m, where they were measured.
     wall : float, optional
         Thickness of the wall of a hollow ball, in m.
+    contact_time, contact_uncertainty : float, optional
+        How long ball and plate touch at 1 m/s, and its standard error, in s. Left out, it may be anything up
+        to what it is for hard plastics.
     doubtful : bool
         Whether impacts that are in doubt count.
     """
@@ -94,6 +98,8 @@ class Setting(Parameters):
     out_of_roundness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
     roughness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
     wall: Wall = None
+    contact_time: Annotated[Number | None, Field(ge=0, description="s"), _CONTACT_OR_NONE] = None
+    contact_uncertainty: Annotated[Number, Field(ge=0, description="s")] = 0.0
     doubtful: bool = False
 
     @model_validator(mode="after")
@@ -115,6 +121,13 @@ class Setting(Parameters):
         if self.out_of_roundness is not None or self.wall is not None:
             from_roundness(self.diameter, self.out_of_roundness or 0.0, wall=self.wall)
         return self
+
+    @property
+    def contact(self) -> flight.ContactTime:
+        """Time of contact, with a standard error; of what it may be where it is not known."""
+        if self.contact_time is None:
+            return flight.ContactTime.possible(diameter=self.diameter, mass=self.mass, wall=self.wall)
+        return flight.ContactTime(at_1_m_s=self.contact_time, uncertainty=self.contact_uncertainty)
 
     @property
     def drag(self) -> flight.Drag | None:
@@ -194,6 +207,9 @@ class Series(Content):
             )
             text += " that errors of the times do not explain" if error else ""
         text += "; air drag is accounted for" if setting.mass is not None else "; air drag is neglected"
+        if setting.contact_time is None:
+            most = digits(1e6 * setting.contact.uncertainty)
+            text += f", and the time of contact may be anything up to {most} µs at 1 m/s"
         gain = mean.aic - best.aic
         if gain >= _BETTER and setting.mass is not None:
             text += f". The law that fits best is {str(best).splitlines()[0]}"
@@ -352,6 +368,7 @@ def _series(heard: xr.Dataset, number: int, setting: Setting, told: Separation) 
             roughness=setting.roughness,
             wall=setting.wall,
             drag=setting.drag,
+            contact=setting.contact,
         )
     return Series(number, rows, data, ordered, found, told.words)
 
@@ -365,6 +382,7 @@ def _coefficients(rows: xr.Dataset, number: int, setting: Setting) -> xr.Dataset
         drop_height=setting.drop if number == 0 else None,
         drop_height_uncertainty=setting.drop_uncertainty,
         drag=setting.drag,
+        contact_time=setting.contact,
         doubtful=setting.doubtful,
     )
 

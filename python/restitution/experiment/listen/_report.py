@@ -88,6 +88,11 @@ def _recording(file: Path, analysis: Analysis) -> list[str]:
     else:
         speed = with_error(drag.terminal_velocity, drag.uncertainty)
         rows.append(["air drag", f"quadratic, terminal velocity {speed} m/s"])
+    contact = setting.contact
+    touching = f"{digits(1e6 * contact.uncertainty)} µs at most; give it"
+    if setting.contact_time is not None:
+        touching = f"{with_error(1e6 * contact.at_1_m_s, 1e6 * contact.uncertainty)} µs, accounted for"
+    rows.append(["time of contact at 1 m/s", touching])
     if not heard_in(analysis.heard):
         return [table(["", ""], rows, caption="Set-up")]
     attrs = analysis.heard.attrs

@@ -15,6 +15,7 @@ from restitution._internal.text import digits
 from restitution.bodies import Form, from_roundness
 from restitution.experiment.budget import ErrorBudget, error_budget
 from restitution.experiment.budget.experiment import ROUGHEST
+from restitution.experiment.flight.contact import ContactTime
 from restitution.experiment.flight.drag import Drag
 from restitution.experiment.inference import posterior
 from restitution.experiment.listen._agreement import compared, disagreement
@@ -62,6 +63,7 @@ def shape(
     roughness: float | None,
     wall: float | None,
     drag: Drag | None,
+    contact: ContactTime,
 ) -> Shape | None:
     """Infer the shape of the ball of a series, and budget its errors; None where no law was fitted."""
     found = _law(fits, data.impact_velocity.values)
@@ -106,6 +108,8 @@ def shape(
             drop_uncertainty=float(data.attrs.get("drop_height_uncertainty", 0.0)),
             drag=drag,
             drag_corrected=drag is not None,
+            contact_time=contact,
+            contact_corrected=True,
         )
     except TooLargeError:
         raise
