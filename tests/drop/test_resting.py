@@ -248,7 +248,7 @@ def test_what_cannot_settle_is_named(change: dict[str, Any], message: str) -> No
             {"body": rs.RoughSphere(radius=3e-3, asperities=9, asperity_radius=3e-6)},
             "must be a rigid body that is not rough",
         ),
-        ({"body": rs.Box(1e-2, 1e-2, 1.1e-2)}, "data is of a Box of .* kg: must be of the body"),
+        ({"body": rs.Box(1e-2, 1e-2, 1.1e-2)}, "data: of a Box of .* kg; must be of the body"),
         ({"incline": 0.1}, "data.incline = 0.1: must be 0"),
         ({"law": rs.TangentialRestitution(normal=0.9, tangential=1.0)}, "create energy"),
         ({"drop": "attitude"}, "data lacks attitude"),

@@ -9,7 +9,7 @@ from scipy.stats import qmc
 import restitution as rs
 from restitution.bodies import AnyBody
 from restitution.gas import theory
-from restitution.gas._surface import surface
+from restitution.gas.theory._surface import surface
 
 ELASTIC = rs.Frictionless(normal=1.0)
 MASS = 4.0 / 3.0 * np.pi

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import restitution as rs
-from restitution import _core, analytic, bodies, figures, fit, flight, laws
+from restitution import _core, analytic, bodies, figures, fit, flight, gas, laws
 
 Call = tuple[Callable[..., Any], Callable[[], dict[str, Any]]]
 """A public function, class or method, and what it is given; of a method with ``self``."""
@@ -102,6 +102,10 @@ def of(thing: str, /, **others: Any) -> Callable[[], dict[str, Any]]:
 
 
 RUN = {"particles": 3, "impacts": 3}
+SMOOTH, WARM = (
+    rs.Frictionless(normal=0.9),
+    {"translational_temperature": 1e-9, "rotational_temperature": 1e-9},
+)
 BINS = ("velocity_bins", "restitution_bins")
 
 
@@ -186,6 +190,13 @@ CALLS: dict[str, Call] = {
         },
     ),
     "analytic.negative_threshold": (analytic.negative_threshold, some("body", "law")),
+    "theory.rates": (gas.theory.rates, some("body", law=SMOOTH, **WARM)),
+    "theory.steady_ratio": (gas.theory.steady_ratio, some("body", law=SMOOTH)),
+    "theory.haff_time": (
+        gas.theory.haff_time,
+        some("body", law=SMOOTH, translational_temperature=1e-9),
+    ),
+    "theory.cooling": (gas.theory.cooling, some("body", law=SMOOTH, times=[0.0, 1.0], **WARM)),
     "analytic.near_round": (
         analytic.near_round,
         lambda: {

@@ -37,6 +37,7 @@ RESULTS = {
     *(f"study.{name}" for name in ("Estimate", "Status", "Study")),
     "bodies.Body",
     "laws.Law",
+    "theory.Rates",
 }
 """Classes that nobody makes but the functions that return them, or that are bases of others."""
 WORKINGS = {
@@ -106,6 +107,8 @@ _AFTER = r"(?= = |: | has | holds | goes | lacks | gave |, \w+(?:: |, )| \* )"
 """What follows the name of an argument, of several, or of an element of it."""
 
 FITTING: dict[str, str] = {
+    "theory.cooling.number_density": "times",
+    "theory.cooling.translational_temperature": "times",
     "Spheroid.equatorial": "polar",
     "fit.Counts.edges": "count",
     "study.study_of.source": "study",
@@ -184,7 +187,9 @@ def judged(name: str, text: str, argument: str, bad: Any) -> str | None:
         return f"does not name {argument}: {text}"
     for line in text.splitlines():
         value = line.removeprefix(f"{argument} = ")
-        alike = (shown(bad), shown(str(bad))) if isinstance(bad, Path) else (shown(bad),)
+        # As the parameter holds it.
+        kept = str(bad) if isinstance(bad, Path) else tuple(bad) if isinstance(bad, list) else bad
+        alike = (shown(bad), shown(kept))
         if value != line and not value.startswith(alike) and not _same_number(value, bad):
             return f"shows another value than {shown(bad)}: {text}"
     return None

@@ -148,8 +148,11 @@ class Parameters(BaseModel, metaclass=_Shown):
             named |= placed
         try:
             super().__init__(**named)
+            return
         except ValidationError as error:
-            raise ParameterError(*_problems(type(self), error)) from None
+            problems = tuple(_problems(type(self), error))
+        # Outside of the clause: pydantic's error, which some versions cannot unpickle, is not its context.
+        raise ParameterError(*problems)
 
     # What is worked out from the fields, compiled objects among it, is neither copied nor pickled.
 

@@ -92,7 +92,7 @@ def first_impact(
     check(body, law)
     orientation = _oriented(body, orientation)
     fall = _fall(body, law, release_height, gravity)
-    if surface not in get_args(Surface):
+    if not isinstance(surface, str) or surface not in get_args(Surface):
         raise ParameterError(wrong("surface", surface, " or ".join(map(repr, get_args(Surface)))))
     if isinstance(body, RoughSphere) and surface == "any":
         return _wide_enough(RoughFirstImpact(body, law, "isotropic", fall))

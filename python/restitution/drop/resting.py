@@ -351,7 +351,7 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
     gravity, incline = pull("data", data)
     mass = real("data.mass", data.attrs.get("mass", np.nan), "that of the body")
     if data.attrs.get("body") != type(body).__name__ or mass != body.mass:
-        text = f" is of a {data.attrs.get('body')} of {mass:g} kg: must be of the body, {body!r}"
+        text = f": of a {data.attrs.get('body')} of {mass:g} kg; must be of the body, {body!r}"
         raise ParameterError(Problem("data", text))
     if incline != 0.0:
         raise ParameterError(wrong("data.incline", incline, "0, a level plane"))

@@ -94,7 +94,7 @@ def frictions(law: object) -> tuple[Law, ...]:
     if isinstance(law, bool) or not isinstance(law, (Real, Material)):
         allowed = "a law such as Coulomb(normal=0.9, friction=0.2), or its normal coefficient alone"
         raise ParameterError(wrong("law", law, allowed))
-    with in_terms_of(normal=law):
+    with in_terms_of(law=law):
         return Frictionless(normal=law), Coulomb(normal=law, friction=STICKS)
 
 

@@ -31,15 +31,17 @@ from scipy.optimize import brentq
 from restitution._internal.arrays import check_each, positive, reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.bodies import AnyBody, Dumbbell
-from restitution.gas._surface import surface
+from restitution.gas.theory._surface import surface
 from restitution.laws import Frictionless, Law, TangentialRestitution
-
-__all__ = ["Rates", "cooling", "haff_time", "rates", "steady_ratio"]
 
 _NODES = 16
 """Of Gauss's rules; half as many give the error."""
 _RANGE = 1e12
 """The largest T_rot/T_tr that is looked for, and the inverse of the smallest."""
+_FAR = 1e100
+"""The largest T_rot/T_tr of a gas, and the inverse of the smallest."""
+_LONG = 1e12
+"""The largest time that is followed, in units of the first time between contacts."""
 
 
 class Rates(NamedTuple):
@@ -64,10 +66,10 @@ class _Closure(NamedTuple):
     axes: int
     """About which contacts turn a particle; E_rot = axes T_rot/2."""
 
-    def slopes(self, translational: float, rotational: float) -> tuple[float, float]:
-        """Return d ln T_tr/dt and d ln T_rot/dt."""
-        _, first, second = self.of(translational, rotational)
-        return first / (1.5 * translational), second / (0.5 * self.axes * rotational)
+    def slopes(self, ratio: float) -> tuple[float, float]:
+        """Return d ln T_tr/dt and d ln T_rot/dt at T_tr = 1 and this T_rot."""
+        _, first, second = self.of(1.0, ratio)
+        return first / 1.5, second / (0.5 * self.axes * ratio)
 
 
 def _closure(body: AnyBody, law: Law, nodes: int = _NODES) -> _Closure:
@@ -156,14 +158,13 @@ def rates(
     >>> found.rotational < 0 < found.translational
     True
     """
-    t = positive("translational_temperature", translational_temperature, "J")
-    r = positive("rotational_temperature", rotational_temperature, "J")
+    t, ratio = _warm(translational_temperature, rotational_temperature)
     n = positive("number_density", number_density, "m-3")
-    fine, coarse = (_closure(body, law, nodes).of(t, r) for nodes in (_NODES, _NODES // 2))
-    size = (fine[0], fine[0] * t, fine[0] * r)
+    fine, coarse = (_closure(body, law, nodes).of(1.0, ratio) for nodes in (_NODES, _NODES // 2))
+    size = (fine[0], fine[0], fine[0] * ratio)
     error = max(abs(one - other) / of for one, other, of in zip(fine, coarse, size, strict=True))
-    contacts, first, second = (n * one for one in fine)
-    return Rates(contacts, first, second, error)
+    speed = n * math.sqrt(t)
+    return Rates(speed * fine[0], speed * t * fine[1], speed * t * fine[2], error)
 
 
 def steady_ratio(body: AnyBody, law: Law) -> float:
@@ -195,7 +196,7 @@ def steady_ratio(body: AnyBody, law: Law) -> float:
     closure = _turned(body, law)
 
     def growth(logarithm: float) -> float:
-        first, second = closure.slopes(1.0, math.exp(logarithm))
+        first, second = closure.slopes(math.exp(logarithm))
         return second - first
 
     far = math.log(_RANGE)
@@ -238,8 +239,8 @@ def haff_time(
     t = positive("translational_temperature", translational_temperature, "J")
     n = positive("number_density", number_density, "m-3")
     closure = _closure(body, law)
-    slope = n * closure.of(t, t * steady_ratio(body, law) if closure.axes else t)[1] / (1.5 * t)
-    return -2.0 / slope if slope < 0.0 else math.inf
+    slope = closure.of(1.0, steady_ratio(body, law) if closure.axes else 1.0)[1] / 1.5
+    return -2.0 / slope / n / math.sqrt(t) if slope < 0.0 else math.inf
 
 
 def cooling(
@@ -285,31 +286,35 @@ def cooling(
     >>> bool(data["translational_temperature"][-1] < 1e-10)
     True
     """
-    t = positive("translational_temperature", translational_temperature, "J")
-    r = positive("rotational_temperature", rotational_temperature, "J")
+    t, ratio = _warm(translational_temperature, rotational_temperature)
     n = positive("number_density", number_density, "m-3")
     at = reals("times", times, "increasing times >= 0, in s", unit="s", dimensions=(1,))
+    if not len(at):
+        raise ParameterError(Problem("times", " has no elements: must have one or more"))
     check_each("times", at, (at >= 0.0) & (np.diff(at, prepend=-1.0) > 0.0), "increasing, >= 0, in s")
     closure = _closure(body, law)
-    size = n * closure.of(t, r)[0]
+    first = closure.of(1.0, ratio)[0]
+    rate = n * math.sqrt(t) * first
+    if not at[-1] * rate <= _LONG:
+        allowed = f"at most {_LONG / rate:.3g} s, {_LONG:g} times that between two contacts at the beginning"
+        raise ParameterError(wrong("times", float(at[-1]), allowed))
 
     def change(_: float, state: npt.NDArray[np.float64]) -> list[float]:
         # In units of the first rate of contacts: ln T_tr, T_rot/T_tr, which may begin near 0, and contacts.
-        now, ratio = t * math.exp(state[0]), max(state[1], 0.0)
-        contacts, one, other = (n / size * part for part in closure.of(now, now * ratio))
-        falls = one / (1.5 * now)
-        turning = other / (0.5 * closure.axes * now) - ratio * falls if closure.axes else -ratio * falls
-        return [falls, turning, contacts]
+        now = max(state[1], 0.0)
+        speed = math.exp(0.5 * state[0]) / first
+        contacts, one, other = (speed * part for part in closure.of(1.0, now))
+        turning = other / (0.5 * closure.axes) if closure.axes else 0.0
+        return [one / 1.5, turning - now * one / 1.5, contacts]
 
-    if not len(at):
-        raise ParameterError(Problem("times", " has no elements: must have one or more"))
-    start = [0.0, r / t, 0.0]
-    end = float(at[-1]) * size
-    found = solve_ivp(change, (0.0, end), start, t_eval=at * size, method="DOP853", rtol=1e-10, atol=1e-10)
-    names = ("translational_temperature", "rotational_temperature", "contacts")
-    texts = ("translational temperature", "rotational temperature", "contacts of a particle")
+    start = [0.0, ratio, 0.0]
+    clock = at * rate
+    end = max(clock[-1], 1e-9)  # of a time alone that is 0
+    found = solve_ivp(change, (0.0, end), start, t_eval=clock, method="DOP853", rtol=1e-10, atol=1e-10)
     cooled = t * np.exp(found.y[0])
     values = (cooled, cooled * found.y[1], found.y[2])
+    names = ("translational_temperature", "rotational_temperature", "contacts")
+    texts = ("translational temperature", "rotational temperature", "contacts of a particle")
     units = ("J", "J", "1")
     return xr.Dataset(
         {
@@ -318,6 +323,16 @@ def cooling(
         },
         {"time": ("time", at, {"long_name": "time", "units": "s"})},
     )
+
+
+def _warm(translational: float, rotational: float) -> tuple[float, float]:
+    """Check both temperatures; return the first and T_rot/T_tr."""
+    t = positive("translational_temperature", translational, "J")
+    r = positive("rotational_temperature", rotational, "J")
+    if not t / _FAR <= r <= t * _FAR:
+        text = f" = {r:g}, translational_temperature = {t:g}: must be at most a factor of {_FAR:g} apart"
+        raise ParameterError(Problem("rotational_temperature", text))
+    return t, r / t
 
 
 def _turned(body: AnyBody, law: Law) -> _Closure:
