@@ -15,6 +15,7 @@ use restitution_core::{Quaternion, Vector};
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Drawn {
+    first: u64,
     encounters: usize,
     translational_temperature: Option<[f64; 2]>,
     speed: Option<f64>,
@@ -29,6 +30,7 @@ impl Drawn {
         let vector = |[x, y, z]: [f64; 3]| Vector::new(x, y, z);
         Encounters {
             bodies,
+            first: self.first,
             count: self.encounters,
             meeting: match (self.speed, self.translational_temperature) {
                 (Some(speed), _) => Meeting::Speed(speed),

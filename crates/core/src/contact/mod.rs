@@ -11,5 +11,5 @@ pub(crate) use first::{Fall, FirstContact, NoContact};
 pub(crate) use lanes::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
 };
-pub(crate) use pair::{PairDeparture, PairFlight, PairSearch, PairTouch, poses};
+pub(crate) use pair::{Between, PairDeparture, PairFlight, PairSearch, PairTouch};
 pub(crate) use plane::Departure;

@@ -2,31 +2,55 @@
 //!
 //! The centres of two balls differ by **y**, |**y**″| ≤ M, the sum of what bounds the acceleration of each; the gap is f = |**y**| − ϱ₁ − ϱ₂. As |**y**| is
 //! convex in **y**, f(t + s) ≥ |**y** + s**y**′| − ϱ₁ − ϱ₂ − Ms²/2. With w the part of **y**′ across **y**, |**y** + s**y**′| ≥ y + y′s + w²s²/2y as long
-//! as |**y** + s**y**′| ≤ y, which is up to s = −2y y′/|**y**′|²; afterwards the parabola of f, f′ and M remains. Both are certified steps, which converge
-//! quadratically to a contact. A plane is a body whose points do not move; its gap to a ball is that of [`super::plane`].
+//! as |**y** + s**y**′| ≤ y, which is up to s = −2y y′/|**y**′|²; afterwards the parabola of f, f′ and M remains.
+//!
+//! Other parts are parted by a plane whose normal **n** + s**n**′ turns at a constant rate. With **d** and **d**′ those or their negatives, a material point
+//! **r** of a body has (**d** + s**d**′)·**r**(t + s) ≤ (**d** + s**e**)·**r** + s²(|**d**′|Ω|**r**| + |**d** + s**d**′|M|**r**|/2), **e** = **d**′ + **d** × **ω**, so that
+//! what parts the bodies is at least
+//!
+//! F(s) = **n**·**X** + s(**n**′·**X** + **n**·**V**) − h₁(**u**₁ + s**u**₁′) − h₂(**u**₂ + s**u**₂′) − Ks²,
+//!
+//! with h the support functions and **u**, **u**′ the vectors ∓**n**, **e** in the axes of a body. F is concave, whatever **n** and **n**′ are: it certifies the
+//! time up to its root. **n** joins the closest points: among all pairs of a corner, an edge or a face of each, that which parts them most. It must be
+//! perpendicular to their edges; what freedom is left maximises **n**·**Y** − √(**n**·B₁**n**) − √(**n**·B₂**n**) by Newton's method. With **n**′ such that it stays
+//! perpendicular, F′ is the rate of the gap, and steps converge quadratically.
+//!
+//! A plane is a body whose points do not move.
 
 use super::certify::INVISIBLE;
 use super::plane::GapExpansion;
-use crate::math::Vector;
+use crate::math::{Quaternion, Symmetric, Vector};
 use crate::motion::{Pose, Turn};
-use crate::shape::{Piece, Top};
+use crate::shape::{Feature, Piece, PieceKind, Top};
 
 /// Most steps of a search.
 const MOST_STEPS: usize = 1 << 20;
+/// Most rounds of Newton's method for a normal.
+const ROUNDS: usize = 30;
+const UP: Vector = Vector::new(0.0, 0.0, 1.0);
 
 /// Two bodies that move freely: the place and the velocity of the centre of the first relative to that of the second, and their rotations.
 pub(crate) struct PairFlight {
     pub apart: Vector,
     pub velocity: Vector,
     pub turns: [Turn; 2],
-    /// What bounds the acceleration of a point of each, per distance from its centre of mass.
-    pub bounds: [f64; 2],
+    /// What bounds the velocity and the acceleration of a point of each, per distance from its centre of mass.
+    pub bounds: [[f64; 2]; 2],
 }
 
 /// The parts of two bodies, and a length to which what rounding leaves is small.
 pub(crate) struct PairSearch<'a> {
     pub pieces: [&'a [Piece]; 2],
     pub size: f64,
+}
+
+/// What a search remembers of two parts.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Between {
+    /// They do not touch up to this time.
+    clear: f64,
+    /// The last normal between them.
+    normal: Vector,
 }
 
 /// Two parts that leave each other, and their speed.
@@ -45,13 +69,13 @@ pub(crate) struct PairTouch {
     pub size: f64,
 }
 
-/// The gap of two parts.
+/// The gap of two balls, or of a ball and a plane.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PairGap {
-    pub width: f64,
-    pub rate: f64,
+pub(crate) struct BallGap {
+    width: f64,
+    rate: f64,
     /// From the second to the first.
-    pub normal: Vector,
+    normal: Vector,
     /// The distance of their centres, and w².
     distance: f64,
     spread: f64,
@@ -59,93 +83,113 @@ pub(crate) struct PairGap {
     bound: f64,
 }
 
-impl PairGap {
+/// A plane between two parts, from the second to the first: **n** and **n**′, the part that it leaves between them, and where they touch it.
+struct Parting<'a> {
+    normal: Vector,
+    turning: Vector,
+    width: f64,
+    features: [Option<&'a Feature>; 2],
+}
+
+/// Attitude and ω, in space, of both bodies.
+type Frames = [(Quaternion, Vector); 2];
+
+impl BallGap {
     /// A time before which it does not close, and which is when it closes where this is soon.
     #[inline(always)]
     fn step(&self, shortest: f64) -> f64 {
         let width = self.width.max(0.0);
-        let root = |bound: f64| {
-            let acceleration = -bound;
-            let (rate, square) = (self.rate, self.rate * self.rate + 2.0 * bound * width);
-            if square < 0.0 || bound <= 0.0 && rate >= 0.0 {
-                return f64::INFINITY;
-            }
-            GapExpansion {
-                width,
-                rate,
-                acceleration,
-            }
-            .closes()
-        };
-        let mut step = root(self.bound);
+        let root = |bound: f64| root(width, self.rate, bound);
+        let step = root(self.bound);
         if self.rate < 0.0 {
             let until = -2.0 * self.distance * self.rate / (self.rate * self.rate + self.spread);
-            step = step.max(until.min(root(self.bound - self.spread / self.distance)));
-            step
+            step.max(until.min(root(self.bound - self.spread / self.distance)))
         } else {
             step.max((shortest / self.bound).sqrt())
         }
     }
 }
 
-impl PairSearch<'_> {
-    /// The gap of two parts of bodies in these poses.
+/// The first root ≥ 0 of width + rate s − bound s²/2; infinite if there is none.
+#[inline(always)]
+fn root(width: f64, rate: f64, bound: f64) -> f64 {
+    let acceleration = -bound;
+    if rate * rate + 2.0 * bound * width < 0.0 || bound <= 0.0 && rate >= 0.0 {
+        return f64::INFINITY;
+    }
+    GapExpansion {
+        width,
+        rate,
+        acceleration,
+    }
+    .closes()
+}
+
+impl<'a> PairSearch<'a> {
     #[inline(always)]
-    pub fn gap(
+    fn parts(&self, parts: [usize; 2]) -> [&'a Piece; 2] {
+        [0, 1].map(|i| &self.pieces[i][parts[i]])
+    }
+
+    /// The gap of two parts, if one is a ball and the other one, too, or a plane.
+    #[inline(always)]
+    fn balls(
         &self,
         flight: &PairFlight,
         parts: [usize; 2],
-        time: f64,
-        poses: &[Pose; 2],
-    ) -> PairGap {
+        (time, poses): (f64, &[Pose; 2]),
+    ) -> Option<BallGap> {
+        let [first, second] = self.parts(parts);
+        let PieceKind::Ball(place, radius) = first.kind else {
+            return None;
+        };
         let apart = flight.velocity.mul_add(time, flight.apart);
-        let [first, second] = [0, 1].map(|i| &self.pieces[i][parts[i]]);
-        match (first, second) {
-            (Piece::Ball(one), Piece::Ball(two)) => {
-                let [a, va] = poses[0].moves(one.place);
-                let [b, vb] = poses[1].moves(two.place);
+        let [a, va] = poses[0].moves(place);
+        let bound = flight.bounds[0][1] * first.reach;
+        match second.kind {
+            PieceKind::Ball(other, size) => {
+                let [b, vb] = poses[1].moves(other);
                 let (y, change) = (apart + a - b, flight.velocity + va - vb);
                 let distance = y.norm();
                 let normal = y / distance;
                 let rate = normal.dot(change);
-                PairGap {
-                    width: distance - (one.radius + two.radius),
+                Some(BallGap {
+                    width: distance - (radius + size),
                     rate,
                     normal,
                     distance,
                     spread: (change.dot(change) - rate * rate).max(0.0),
-                    bound: flight.bounds[0] * one.reach + flight.bounds[1] * two.reach,
-                }
+                    bound: bound + flight.bounds[1][1] * second.reach,
+                })
             }
-            (Piece::Ball(one), Piece::Plane) => {
-                let [a, va] = poses[0].moves(one.place);
-                PairGap {
-                    width: apart.z + a.z - one.radius,
-                    rate: flight.velocity.z + va.z,
-                    normal: Vector::new(0.0, 0.0, 1.0),
-                    distance: f64::INFINITY,
-                    spread: 0.0,
-                    bound: flight.bounds[0] * one.reach,
-                }
-            }
-            (Piece::Plane, _) => unreachable!("the plane is the second body"),
+            PieceKind::Plane => Some(BallGap {
+                width: apart.z + a.z - radius,
+                rate: flight.velocity.z + va.z,
+                normal: UP,
+                distance: f64::INFINITY,
+                spread: 0.0,
+                bound,
+            }),
+            PieceKind::Convex => None,
         }
     }
 
-    /// f″ of two parts.
+    /// True if two balls that touch and do not part are pressed together.
     #[inline(always)]
-    pub fn acceleration(
-        &self,
-        tops: [&Top; 2],
-        gap: &PairGap,
-        parts: [usize; 2],
-        poses: &[Pose; 2],
-    ) -> f64 {
-        let along = [0, 1].map(|i| match &self.pieces[i][parts[i]] {
-            Piece::Ball(ball) => gap.normal.dot(poses[i].bends(tops[i], ball.place)),
-            Piece::Plane => 0.0,
+    pub fn rests(&self, tops: [&Top; 2], flight: &mut PairFlight, left: &PairDeparture) -> bool {
+        if left.speed > 0.0 {
+            return false;
+        }
+        let poses = poses(flight, 0.0);
+        let Some(gap) = self.balls(flight, left.parts, (0.0, &poses)) else {
+            return false;
+        };
+        let pieces = self.parts(left.parts);
+        let along = [0, 1].map(|i| match pieces[i].kind {
+            PieceKind::Ball(place, _) => gap.normal.dot(poses[i].bends(tops[i], place)),
+            _ => 0.0,
         });
-        gap.spread / gap.distance + along[0] - along[1]
+        gap.spread / gap.distance + along[0] - along[1] <= 0.0
     }
 
     /// The narrowest gap of all parts at the beginning of a flight.
@@ -154,26 +198,67 @@ impl PairSearch<'_> {
         let mut least = f64::INFINITY;
         for i in 0..self.pieces[0].len() {
             for j in 0..self.pieces[1].len() {
-                least = least.min(self.gap(flight, [i, j], 0.0, &poses).width);
+                let width = match self.balls(flight, [i, j], (0.0, &poses)) {
+                    Some(gap) => gap.width,
+                    None => {
+                        parting(
+                            flight.apart,
+                            self.parts([i, j]),
+                            frames(&poses),
+                            Vector::default(),
+                        )
+                        .width
+                    }
+                };
+                least = least.min(width);
             }
         }
         least
     }
 
-    /// The first contact between two times, where two parts may be leaving each other at the beginning; an error if it does not converge. `clear` has
-    /// room for a time of each two parts, up to which they do not touch, and `steps` counts.
+    /// The normal from the second body to the first where two parts touch, and the point of contact from the centre of mass of the first.
+    #[inline(always)]
+    pub fn meeting(
+        &self,
+        apart: Vector,
+        parts: [usize; 2],
+        poses: &[Pose; 2],
+        between: &Between,
+    ) -> (Vector, Vector) {
+        let pieces = self.parts(parts);
+        if let (PieceKind::Ball(place, radius), other) = (pieces[0].kind, pieces[1].kind) {
+            let [one, _] = poses[0].moves(place);
+            match other {
+                PieceKind::Ball(second, _) => {
+                    let y = apart + one - poses[1].moves(second)[0];
+                    let normal = y / y.norm();
+                    return (normal, one - normal * radius);
+                }
+                PieceKind::Plane => return (UP, one - UP * radius),
+                PieceKind::Convex => {}
+            }
+        }
+        let frames = frames(poses);
+        let found = parting(apart, pieces, frames, between.normal);
+        (found.normal, found.place(apart, pieces, frames))
+    }
+
+    /// The first contact between two times, where two parts may be leaving each other at the beginning; an error if it does not converge. `between` has
+    /// room for each two parts, and `steps` counts.
     #[inline(always)]
     pub fn first(
         &self,
         flight: &mut PairFlight,
         departure: Option<PairDeparture>,
         [from, until]: [f64; 2],
-        clear: &mut [f64],
+        between: &mut [Between],
         steps: &mut u64,
     ) -> Result<Option<PairTouch>, ()> {
         let [_, columns] = self.pieces.map(<[Piece]>::len);
         let invisible = INVISIBLE * self.size;
-        clear.fill(0.0);
+        for each in &mut *between {
+            each.clear = 0.0;
+        }
         let (mut time, mut last) = (from, 0);
         for _ in 0..MOST_STEPS {
             *steps += 1;
@@ -181,25 +266,35 @@ impl PairSearch<'_> {
             let mut best = f64::INFINITY;
             let (mut found, first) = (None, last);
             // That which was the first to be near comes first, so that most others need no look.
-            for turn in 0..clear.len() {
+            for turn in 0..between.len() {
                 let place = match turn {
                     0 => first,
                     _ if turn <= first => turn - 1,
                     _ => turn,
                 };
-                if clear[place] < best {
+                if between[place].clear < best {
                     let parts = [place / columns, place % columns];
-                    let mut gap = self.gap(flight, parts, time, &poses);
-                    if let Some(left) = departure.filter(|left| time == 0.0 && left.parts == parts)
-                    {
-                        (gap.width, gap.rate) = (0.0, left.speed);
-                    }
-                    let step = gap.step(invisible);
-                    clear[place] = time + step;
-                    if clear[place] < best {
-                        (best, last) = (clear[place], place);
-                        let closes = gap.rate < 0.0 && gap.bound * step * step <= invisible;
-                        found = closes.then_some((parts, gap.bound));
+                    let left = departure.filter(|left| time == 0.0 && left.parts == parts);
+                    let (step, rate, bound) = match self.balls(flight, parts, (time, &poses)) {
+                        Some(mut gap) => {
+                            if let Some(left) = left {
+                                (gap.width, gap.rate) = (0.0, left.speed);
+                            }
+                            (gap.step(invisible), gap.rate, gap.bound)
+                        }
+                        None => self.convex_step(
+                            flight,
+                            parts,
+                            (time, &poses),
+                            left,
+                            &mut between[place].normal,
+                        ),
+                    };
+                    between[place].clear = time + step;
+                    if between[place].clear < best {
+                        (best, last) = (between[place].clear, place);
+                        let closes = rate < 0.0 && bound * step * step <= invisible;
+                        found = closes.then_some((parts, bound));
                     }
                 }
             }
@@ -217,6 +312,359 @@ impl PairSearch<'_> {
         }
         Err(())
     }
+
+    /// A certified step of two convex parts, the rate of their gap and 2K.
+    #[inline(always)]
+    fn convex_step(
+        &self,
+        flight: &PairFlight,
+        parts: [usize; 2],
+        (time, poses): (f64, &[Pose; 2]),
+        left: Option<PairDeparture>,
+        normal: &mut Vector,
+    ) -> (f64, f64, f64) {
+        let (pieces, frames) = (self.parts(parts), frames(poses));
+        let apart = flight.velocity.mul_add(time, flight.apart);
+        let found = parting(apart, pieces, frames, *normal);
+        *normal = found.normal;
+        let Parting {
+            normal: n, turning, ..
+        } = found;
+        let speed = turning.norm();
+        let reach = |i: usize| match pieces[i].kind {
+            PieceKind::Ball(_, radius) => pieces[i].reach + radius,
+            _ => pieces[i].reach,
+        };
+        let most = if speed > 0.0 {
+            1.0 / speed
+        } else {
+            f64::INFINITY
+        };
+        let longer = if speed > 0.0 { 2.0_f64.sqrt() } else { 1.0 };
+        let [first, second] = [0, 1].map(|i| {
+            let [velocity, acceleration] = flight.bounds[i];
+            (speed * velocity + 0.5 * longer * acceleration) * reach(i)
+        });
+        let curved = first + second + (-turning.dot(flight.velocity)).max(0.0);
+        let directions = [(0, -1.0), (1, 1.0)].map(|(i, sign)| {
+            let (attitude, spin) = frames[i];
+            let (d, change) = (n * sign, turning * sign);
+            let back = attitude.inverse();
+            (back.rotate(d), back.rotate(change + d.cross(spin)))
+        });
+        let across = turning.dot(apart) + n.dot(flight.velocity);
+        let (mut size, mut rate) = (0.0, across);
+        for (piece, (u, change)) in pieces.into_iter().zip(directions) {
+            let (height, point) = piece.support(u, change);
+            size += height;
+            rate -= change.dot(point);
+        }
+        let begin = n.dot(apart) - size;
+        let (width, lift) = match left {
+            Some(left) => (0.0, left.speed - rate),
+            None => (begin.max(0.0), 0.0),
+        };
+        let rate = rate + lift;
+        let parted = |s: f64| {
+            let sum: f64 = pieces
+                .into_iter()
+                .zip(directions)
+                .map(|(piece, (u, change))| {
+                    piece.support(change.mul_add(s, u), Vector::default()).0
+                })
+                .sum();
+            width + (s * (across + lift) - (sum - size)) - curved * s * s
+        };
+        let shortest = (INVISIBLE * self.size / (2.0 * curved)).sqrt();
+        let mut after = root(width, rate, 2.0 * curved).min(most);
+        if rate >= 0.0 {
+            after = after.max(shortest);
+        }
+        // A chord of F ends in front of its root, because F is concave.
+        let mut before = (0.0, width);
+        for _ in 0..64 {
+            if after <= shortest || after == f64::INFINITY {
+                break;
+            }
+            let value = parted(after);
+            if value >= -1e-16 * self.size {
+                break;
+            }
+            if before.1 > 0.0 {
+                after = before.0 + (after - before.0) * before.1 / (before.1 - value);
+                break;
+            }
+            // From a gap of 0 that opens, to a place where it is open.
+            let inside = 0.5 * after;
+            let there = parted(inside);
+            if there > 0.0 {
+                before = (inside, there);
+            } else {
+                after = inside;
+            }
+        }
+        let step = if rate >= 0.0 {
+            after.max(shortest)
+        } else {
+            after
+        };
+        (step, rate, 2.0 * curved)
+    }
+}
+
+impl Parting<'_> {
+    /// The point where both touch the plane, from the centre of mass of the first.
+    #[inline(always)]
+    fn place(&self, apart: Vector, pieces: [&Piece; 2], frames: Frames) -> Vector {
+        let point = |i: usize, sign: f64| {
+            let (attitude, _) = frames[i];
+            let u = attitude.inverse().rotate(self.normal * sign);
+            attitude.rotate(pieces[i].support(u, Vector::default()).1)
+        };
+        let tied = |i: usize| self.features[i].map_or(0, |feature| feature.ties.len());
+        if pieces[1].kind == PieceKind::Plane || tied(0) == 0 && self.features[0].is_some() {
+            return point(0, -1.0);
+        }
+        if tied(1) == 0 || tied(0) == 2 {
+            return point(1, 1.0) - apart;
+        }
+        if tied(1) == 2 {
+            return point(0, -1.0);
+        }
+        // Where two edges cross.
+        let (one, two) = (point(0, -1.0), point(1, 1.0) - apart);
+        let edge = |i: usize| {
+            let tie = self.features[i].map_or(Vector::default(), |feature| feature.ties[0]);
+            frames[i].0.rotate(tie)
+        };
+        let (e, f) = (edge(0), edge(1));
+        let (between, normal) = (two - one, e.cross(f));
+        one + e * (between.cross(f).dot(normal) / normal.dot(normal))
+    }
+}
+
+/// The plane that parts two convex parts most, from the normal that did so last.
+#[inline(always)]
+fn parting<'a>(apart: Vector, pieces: [&'a Piece; 2], frames: Frames, last: Vector) -> Parting<'a> {
+    let width = |n: Vector| {
+        let support = |i: usize, sign: f64| {
+            let u = frames[i].0.inverse().rotate(n * sign);
+            pieces[i].support(u, Vector::default()).0
+        };
+        n.dot(apart) - support(0, -1.0) - support(1, 1.0)
+    };
+    if pieces[1].kind == PieceKind::Plane {
+        return Parting {
+            normal: UP,
+            turning: Vector::default(),
+            width: width(UP),
+            features: [None, None],
+        };
+    }
+    let start = if last == Vector::default() {
+        apart / apart.norm()
+    } else {
+        last
+    };
+    let rounds = [0, 1].map(|i| {
+        let axes = frames[i].0;
+        let columns = [
+            Vector::new(1.0, 0.0, 0.0),
+            Vector::new(0.0, 1.0, 0.0),
+            Vector::new(0.0, 0.0, 1.0),
+        ]
+        .map(|unit| {
+            axes.rotate(pieces[i].round * axes.inverse().rotate(unit))
+                .parts()
+        });
+        Symmetric::from_rows(columns)
+    });
+    let sharp = rounds.iter().all(|round| *round == Symmetric::default());
+    let mut best = Parting {
+        normal: start,
+        turning: Vector::default(),
+        width: f64::NEG_INFINITY,
+        features: [None, None],
+    };
+    let mut consider = |normal: Vector, features: [Option<&'a Feature>; 2]| {
+        let width = width(normal);
+        if width > best.width {
+            best = Parting {
+                normal,
+                width,
+                features,
+                ..best
+            };
+        }
+    };
+    for (i, sign) in [(0, -1.0), (1, 1.0)] {
+        for face in &pieces[i].features {
+            if let Some(normal) = face.normal {
+                let mut features = [None, None];
+                features[i] = Some(face);
+                consider(frames[i].0.rotate(normal) * sign, features);
+            }
+        }
+    }
+    for one in pieces[0].features.iter().filter(|one| one.normal.is_none()) {
+        for two in pieces[1].features.iter().filter(|two| two.normal.is_none()) {
+            let count = one.ties.len() + two.ties.len();
+            // Corners of polyhedra touch only by chance, and faces and edges part them as well.
+            if sharp && count < 2 {
+                continue;
+            }
+            let features = [Some(one), Some(two)];
+            let [a, b] = [0, 1].map(|i| frames[i].0);
+            let ties = one.ties.iter().map(|&tie| a.rotate(tie));
+            let ties: [Option<Vector>; 2] = {
+                let mut all = ties.chain(two.ties.iter().map(|&tie| b.rotate(tie)));
+                [all.next(), all.next()]
+            };
+            if let [Some(e), Some(f)] = ties {
+                let across = e.cross(f);
+                let square = across.dot(across);
+                if square > 1e-20 * e.dot(e) * f.dot(f) {
+                    let side = if across.dot(apart) < 0.0 { -1.0 } else { 1.0 };
+                    consider(across * (side / square.sqrt()), features);
+                }
+                continue;
+            }
+            let between = apart + a.rotate(one.corner) - b.rotate(two.corner);
+            if let Some(normal) = freely(between, &rounds, ties[0], start) {
+                consider(normal, features);
+            }
+        }
+    }
+    best.turning = turning(&best, frames);
+    best
+}
+
+/// The unit vector that maximises **n**·**Y** − √(**n**·B₁**n**) − √(**n**·B₂**n**) among those perpendicular to `tie`, if it is given.
+#[inline(always)]
+fn freely(
+    between: Vector,
+    rounds: &[Symmetric; 2],
+    tie: Option<Vector>,
+    start: Vector,
+) -> Option<Vector> {
+    let onto = |v: Vector| {
+        let v = match tie {
+            Some(tie) => v - tie * (v.dot(tie) / tie.dot(tie)),
+            None => v,
+        };
+        let size = v.norm();
+        (size > 0.0).then(|| v / size)
+    };
+    let mut n = onto(start).or_else(|| onto(between))?;
+    let value = |n: Vector| {
+        let round: f64 = rounds.iter().map(|b| n.dot(*b * n).max(0.0).sqrt()).sum();
+        n.dot(between) - round
+    };
+    let mut now = value(n);
+    for _ in 0..ROUNDS {
+        let first = match tie {
+            Some(tie) => tie / tie.norm(),
+            None => {
+                let aside = if n.x.abs() < 0.6 {
+                    Vector::new(1.0, 0.0, 0.0)
+                } else {
+                    Vector::new(0.0, 1.0, 0.0)
+                };
+                let across = n.cross(aside);
+                across / across.norm()
+            }
+        };
+        let second = n.cross(first);
+        // Slope along both, and curvature: radii of curvature, and the gap, as n stays a unit vector.
+        let mut slope = [first.dot(between), second.dot(between)];
+        let (mut aa, mut ab, mut bb) = (now, 0.0, now);
+        for round in rounds {
+            let pushed = *round * n;
+            let square = n.dot(pushed);
+            if square <= 0.0 {
+                continue;
+            }
+            let part = 1.0 / square.sqrt();
+            let [a, b] = [first, second].map(|t| t.dot(pushed) * part);
+            slope = [slope[0] - a, slope[1] - b];
+            aa += (first.dot(*round * first) - a * a) * part;
+            ab += (first.dot(*round * second) - a * b) * part;
+            bb += (second.dot(*round * second) - b * b) * part;
+        }
+        let [p, q] = slope;
+        let (x, y) = if tie.is_some() {
+            (0.0, if bb > 0.0 { q / bb } else { q.signum() })
+        } else {
+            let determinant = aa * bb - ab * ab;
+            if aa > 0.0 && determinant > 0.0 {
+                (
+                    (bb * p - ab * q) / determinant,
+                    (aa * q - ab * p) / determinant,
+                )
+            } else {
+                let size = (p * p + q * q).sqrt().max(f64::MIN_POSITIVE);
+                (p / size, q / size)
+            }
+        };
+        let size = (x * x + y * y).sqrt();
+        if size < 1e-15 {
+            break;
+        }
+        let mut part = (0.7 / size).min(1.0);
+        let step = first * x + second * y;
+        loop {
+            let next = onto(step.mul_add(part, n))?;
+            let there = value(next);
+            if there >= now || part * size < 1e-7 {
+                (n, now) = (next, there);
+                break;
+            }
+            part *= 0.5;
+        }
+        if size < 1e-9 {
+            break;
+        }
+    }
+    Some(n)
+}
+
+/// **n**′ such that **n** stays perpendicular to the edges that touch.
+#[inline(always)]
+fn turning(parting: &Parting<'_>, frames: Frames) -> Vector {
+    let n = parting.normal;
+    let mut rows = [(Vector::default(), 0.0); 2];
+    let mut count = 0;
+    for (feature, (attitude, spin)) in parting.features.iter().zip(frames) {
+        for &tie in feature.iter().flat_map(|feature| &feature.ties) {
+            let edge = attitude.rotate(tie / tie.norm());
+            rows[count] = (edge, -n.dot(spin.cross(edge)));
+            count += 1;
+        }
+    }
+    let [(e, p), (f, q)] = rows;
+    match count {
+        0 => Vector::default(),
+        1 => e * p,
+        _ => {
+            let along = e.dot(f);
+            let determinant = 1.0 - along * along;
+            if determinant < 1e-8 {
+                return Vector::default();
+            }
+            e * ((p - along * q) / determinant) + f * ((q - along * p) / determinant)
+        }
+    }
+}
+
+/// Attitudes, and ω in space.
+#[inline(always)]
+fn frames(poses: &[Pose; 2]) -> Frames {
+    let frame = |pose: &Pose| match pose {
+        Pose::Any(attitude, spin) => (*attitude, attitude.rotate(*spin)),
+        // Of balls on an axis: a rotation that takes the axis where it is.
+        Pose::Axis(axis, [e, change, _]) => (Pose::about(*axis, *e), e.cross(*change)),
+    };
+    [frame(&poses[0]), frame(&poses[1])]
 }
 
 /// Both bodies at a time.

@@ -38,12 +38,18 @@ impl Top {
 
 impl Turn {
     /// The rotation from this attitude with this ω in the axes of the body, whose points are all on a principal axis that precesses, if that
-    /// is given; and the largest acceleration of a point, per distance from the centre of mass.
+    /// is given; and the largest velocity and acceleration of a point, per distance from the centre of mass.
     #[inline(always)]
-    pub fn new(top: &Top, axis: Option<usize>, attitude: Quaternion, spin: Vector) -> (Self, f64) {
+    pub fn new(
+        top: &Top,
+        axis: Option<usize>,
+        attitude: Quaternion,
+        spin: Vector,
+    ) -> (Self, [f64; 2]) {
         let Some(axis) = axis else {
-            let bound = top.bounds(spin).whole;
-            return (Self::Any(Rotation::new(*top, attitude, spin)), bound);
+            let bounds = top.bounds(spin);
+            let turn = Self::Any(Rotation::new(*top, attitude, spin));
+            return (turn, [bounds.fastest, bounds.whole]);
         };
         let e = attitude.rotate(unit(axis));
         let across = top.moments()[(axis + 1) % 3];
@@ -51,14 +57,17 @@ impl Turn {
         let rate = momentum.norm();
         if rate == 0.0 {
             let none = Vector::default();
-            return (Self::Axis(axis, [e, none, none], 0.0), 0.0);
+            return (Self::Axis(axis, [e, none, none], 0.0), [0.0; 2]);
         }
         let about = momentum / rate;
         let third = about.cross(e);
         let second = third.cross(about);
         let along = about * about.dot(e);
-        let bound = rate * rate * third.norm();
-        (Self::Axis(axis, [along, second, third], rate), bound)
+        let speed = rate * third.norm();
+        (
+            Self::Axis(axis, [along, second, third], rate),
+            [speed, rate * speed],
+        )
     }
 
     /// The body at a time ≥ 0.
@@ -91,6 +100,20 @@ impl Pose {
             }
             Self::Any(attitude, spin) => [point, spin.cross(point)].map(|v| attitude.rotate(v)),
         }
+    }
+
+    /// A rotation that takes this principal axis to a unit vector.
+    pub fn about(axis: usize, e: Vector) -> Quaternion {
+        let from = unit(axis);
+        let (along, across) = (from.dot(e), from.cross(e));
+        if along > -0.5 {
+            return Quaternion::new(1.0 + along, across.x, across.y, across.z).normalized();
+        }
+        // Half a turn about the next axis first.
+        let Vector { x, y, z } = unit((axis + 1) % 3);
+        let (along, across) = (-along, across * -1.0);
+        Quaternion::new(1.0 + along, across.x, across.y, across.z).normalized()
+            * Quaternion::new(0.0, x, y, z)
     }
 
     /// Its acceleration.

@@ -4,11 +4,10 @@
 //! that is not left, or contacts that accumulate, end it as a collapse.
 
 use super::Partner;
-use crate::contact::{PairDeparture, PairFlight, PairSearch, PairTouch, poses};
+use crate::contact::{Between, PairDeparture, PairFlight, PairSearch, PairTouch};
 use crate::law::{Compliance, Law};
 use crate::math::{Quaternion, Symmetric, Vector};
-use crate::motion::{Rotation, Turn};
-use crate::shape::Piece;
+use crate::motion::{Pose, Rotation, Turn};
 use crate::simd::Level;
 use crate::{COLLAPSE_RUN, Fault};
 use pulp::{Simd, WithSimd};
@@ -100,14 +99,14 @@ pub fn encounter(
     chance: impl Fn(u64) -> f64,
     hit: impl FnMut(&Hit),
 ) -> Result<Outcome, Trouble> {
-    let mut clear = vec![0.0; bodies[0].pieces.len() * bodies[1].pieces.len()];
+    let mut between = vec![Between::default(); bodies[0].pieces.len() * bodies[1].pieces.len()];
     Level::best().run(Following {
         bodies,
         law,
         states,
         chance,
         hit,
-        clear: &mut clear,
+        between: &mut between,
     })
 }
 
@@ -129,8 +128,8 @@ pub(super) struct Following<'a, 'b, C, H> {
     pub states: [PairState; 2],
     pub chance: C,
     pub hit: H,
-    /// Room for a time of each two parts.
-    pub clear: &'a mut [f64],
+    /// Room for what is known of each two parts.
+    pub between: &'a mut [Between],
 }
 
 impl<C: Fn(u64) -> f64, H: FnMut(&Hit)> WithSimd for Following<'_, '_, C, H> {
@@ -180,23 +179,15 @@ impl<C: Fn(u64) -> f64, H: FnMut(&Hit)> Following<'_, '_, C, H> {
             if contacts == 0 && leaves <= 0.0 {
                 break Ending::Missed;
             }
-            let rests = |left: &PairDeparture, flight: &mut PairFlight| {
-                let poses = poses(flight, 0.0);
-                let gap = search.gap(flight, left.parts, 0.0, &poses);
-                let tops = [&bodies[0].top, &bodies[1].top];
-                left.speed <= 0.0 && search.acceleration(tops, &gap, left.parts, &poses) <= 0.0
-            };
-            if departure
-                .as_ref()
-                .is_some_and(|left| rests(left, &mut flight))
-            {
+            let tops = [&bodies[0].top, &bodies[1].top];
+            if departure.is_some_and(|left| search.rests(tops, &mut flight, &left)) {
                 break Ending::Collapse;
             }
             let found = search.first(
                 &mut flight,
                 departure,
                 [enters, leaves],
-                self.clear,
+                self.between,
                 &mut steps,
             );
             let found = found.map_err(|()| Trouble::Unconverged)?;
@@ -220,6 +211,7 @@ impl<C: Fn(u64) -> f64, H: FnMut(&Hit)> Following<'_, '_, C, H> {
                 };
             };
             let speed = self.collide(
+                &search,
                 clock,
                 contacts,
                 &touch,
@@ -301,6 +293,7 @@ impl<C: Fn(u64) -> f64, H: FnMut(&Hit)> Following<'_, '_, C, H> {
     #[inline(always)]
     fn collide(
         &mut self,
+        search: &PairSearch<'_>,
         time: f64,
         number: u64,
         touch: &PairTouch,
@@ -311,19 +304,11 @@ impl<C: Fn(u64) -> f64, H: FnMut(&Hit)> Following<'_, '_, C, H> {
         let bodies = self.bodies;
         let apart = places[0] - places[1];
         let velocity = velocities[0] - velocities[1];
-        let centre = |i: usize| match &bodies[i].pieces[touch.parts[i]] {
-            Piece::Ball(ball) => (turning[i].attitude.rotate(ball.place), ball.radius),
-            Piece::Plane => (Vector::default(), 0.0),
-        };
-        let ((one, radius), (two, _)) = (centre(0), centre(1));
-        let normal = if bodies[1].is_plane() {
-            Vector::new(0.0, 0.0, 1.0)
-        } else {
-            let between = apart + one - two;
-            between / between.norm()
-        };
+        let poses = [0, 1].map(|i| Pose::Any(turning[i].attitude, turning[i].spin));
+        let [row, column] = touch.parts;
+        let between = &self.between[row * bodies[1].pieces.len() + column];
         // One point for both, so that the angular momentum stays what it is.
-        let first = one - normal * radius;
+        let (normal, first) = search.meeting(apart, touch.parts, &poses, between);
         let arms = [first, first + apart];
         let frame = frame(normal);
         let back = frame.inverse();

@@ -3,7 +3,7 @@
 use super::PairState;
 use crate::Error;
 use crate::math::{Quaternion, Vector};
-use crate::shape::{AnyBody, Piece, Top};
+use crate::shape::{AnyBody, Piece, PieceKind, Top};
 
 /// A body of an encounter, or a plane at rest, the body of infinite mass. Units are coherent, such as SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,17 +38,17 @@ impl Partner {
         let pieces = body.pieces(name)?;
         let on = |axis: usize| {
             let off = |piece: &Piece| {
-                let Piece::Ball(ball) = piece else {
+                let PieceKind::Ball(place, _) = piece.kind else {
                     return true;
                 };
-                let place = ball.place.parts();
+                let place = place.parts();
                 place[(axis + 1) % 3] != 0.0 || place[(axis + 2) % 3] != 0.0
             };
             top.precesses(axis) && !pieces.iter().any(off)
         };
-        let reach = |piece: &Piece| match piece {
-            Piece::Ball(ball) => ball.reach + ball.radius,
-            Piece::Plane => 0.0,
+        let reach = |piece: &Piece| match piece.kind {
+            PieceKind::Ball(_, radius) => piece.reach + radius,
+            _ => piece.reach,
         };
         Ok(Self {
             inverse_mass: 1.0 / body.mass(),
@@ -69,7 +69,7 @@ impl Partner {
             inverse_moments: [0.0; 3],
             reach: 0.0,
             axes: Quaternion::IDENTITY,
-            pieces: vec![Piece::Plane],
+            pieces: vec![Piece::plane()],
             axis: None,
         }
     }

@@ -3,6 +3,7 @@
 use super::encounter::{Following, Hit, Outcome, PairState, Trouble, narrowest};
 use super::{Partner, sample::Encounters};
 use crate::Error;
+use crate::contact::Between;
 use crate::law::Law;
 use crate::math::Vector;
 use crate::random::of_impact;
@@ -277,7 +278,8 @@ impl Encounters<'_> {
         let (count, next) = (self.count.div_ceil(BLOCK), AtomicUsize::new(0));
         let done = Mutex::new(Vec::new());
         let work = |_| {
-            let mut clear = vec![0.0; self.bodies[0].pieces.len() * self.bodies[1].pieces.len()];
+            let mut between =
+                vec![Between::default(); self.bodies[0].pieces.len() * self.bodies[1].pieces.len()];
             loop {
                 let number = next.fetch_add(1, Ordering::Relaxed);
                 if number >= count || monitor.is_cancelled() {
@@ -290,7 +292,7 @@ impl Encounters<'_> {
                     law,
                     given,
                     rows,
-                    clear: &mut clear,
+                    between: &mut between,
                     sum: T::default(),
                     add: &add,
                 })?;
@@ -309,6 +311,7 @@ impl Encounters<'_> {
     }
 
     /// A row of [`ENCOUNTER`].
+    #[inline(always)]
     fn write(&self, found: &Encountered, row: &mut Vec<f64>) {
         let Encountered {
             before,
@@ -389,7 +392,7 @@ struct Block<'a, 'b, T, A> {
     law: &'a Law<'b>,
     given: Option<&'a [[PairState; 2]]>,
     rows: Range<usize>,
-    clear: &'a mut [f64],
+    between: &'a mut [Between],
     sum: T,
     add: &'a A,
 }
@@ -399,10 +402,15 @@ impl<T, A: Fn(&Encountered, &[Hit], &mut T)> WithSimd for Block<'_, '_, T, A> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, _: S) -> Self::Output {
-        let Encounters { bodies, seed, .. } = *self.encounters;
+        let Encounters {
+            bodies,
+            first,
+            seed,
+            ..
+        } = *self.encounters;
         let mut hits = Vec::new();
         for row in self.rows {
-            let number = row as u64;
+            let number = first + row as u64;
             let before = match self.given {
                 Some(given) => given[row],
                 None => self.encounters.draw(number),
@@ -411,22 +419,22 @@ impl<T, A: Fn(&Encountered, &[Hit], &mut T)> WithSimd for Block<'_, '_, T, A> {
                 check_apart(bodies, &before)?;
             }
             hits.clear();
+            self.between.fill(Between::default());
             let following = Following {
                 bodies,
                 law: self.law,
                 states: before,
                 chance: |contact| of_impact(seed, number, contact),
                 hit: |hit: &Hit| hits.push(*hit),
-                clear: &mut *self.clear,
+                between: &mut *self.between,
             };
             let outcome = following.follow();
             let outcome =
                 outcome.map_err(|trouble| failed(self.law, trouble, (seed, number), hits.len()))?;
-            let first = hits.first().copied();
             let found = Encountered {
                 before,
                 outcome,
-                first,
+                first: hits.first().copied(),
             };
             (self.add)(&found, &hits, &mut self.sum);
         }

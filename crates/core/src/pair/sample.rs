@@ -25,6 +25,8 @@ pub enum Meeting {
 pub struct Encounters<'a> {
     /// The bodies, of which the second may be a plane.
     pub bodies: [&'a Partner; 2],
+    /// The number of the first encounter, on which it depends with the seed.
+    pub first: u64,
     /// Number of encounters.
     pub count: usize,
     /// How they meet.

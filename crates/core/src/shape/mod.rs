@@ -30,7 +30,7 @@ pub use clump::Matter;
 pub use hull::triangles as convex_hull;
 
 pub(crate) use convex::{Convex, ConvexSurface};
-pub(crate) use pieces::Piece;
+pub(crate) use pieces::{Feature, Piece, PieceKind};
 pub use revolution::*;
 pub(crate) use revolved::Band;
 pub use rigid::{Inertia, Rigid, RigidBall};

@@ -1,34 +1,60 @@
 //! The parts with which a body touches another body: on a plane only its convex hull can.
+//!
+//! Each is convex, and the Minkowski sum of a polyhedron (a point, a segment, or one with faces) and of an ellipsoid whose support function is
+//! √(**u**·B**u**): a ball has B = ρ²I, a disc, which makes a cylinder of a segment, B = ρ²(I − **aa**), and a polyhedron by itself B = 0.
 
+use super::convex::Convex;
 use super::revolution::Ball;
-use super::{AnyBody, Rigid, RigidSurface, Solid};
+use super::{AnyBody, ConvexSurface, Rigid, RigidSurface, Solid, convex_hull};
 use crate::Error;
 use crate::Value;
-use crate::math::Vector;
+use crate::math::{Quaternion, Symmetric, Vector};
 
 /// A part of a body, in m and the principal axes, from the centre of mass.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Piece {
-    Ball(BallPiece),
+pub(crate) struct Piece {
+    pub kind: PieceKind,
+    /// The corners of the polyhedron; of a ball its centre.
+    pub corners: Vec<Vector>,
+    pub features: Vec<Feature>,
+    /// B.
+    pub round: Symmetric,
+    /// The largest distance of a point of it from the centre of mass; of a ball that of its centre.
+    pub reach: f64,
+}
+
+/// What a part is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum PieceKind {
+    /// A ball with this centre and this radius.
+    Ball(Vector, f64),
+    Convex,
     /// Fixed in space, with the normal z.
     Plane,
 }
 
-/// A ball.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct BallPiece {
-    pub place: Vector,
-    pub radius: f64,
-    /// The distance of its centre from the centre of mass.
-    pub reach: f64,
+/// A corner, an edge or a face of a part: a corner of it, and the directions to which the normal is perpendicular where it touches.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Feature {
+    pub corner: Vector,
+    pub ties: Vec<Vector>,
+    /// The outward normal of a face.
+    pub normal: Option<Vector>,
 }
 
-impl BallPiece {
-    fn new(place: Vector, radius: f64) -> Self {
+impl Feature {
+    fn new(corner: Vector, ties: &[Vector]) -> Self {
+        let normal = match ties {
+            [a, b] => {
+                let across = a.cross(*b);
+                Some(across / across.norm())
+            }
+            _ => None,
+        };
         Self {
-            place,
-            radius,
-            reach: place.norm(),
+            corner,
+            ties: ties.to_vec(),
+            normal,
         }
     }
 }
@@ -44,6 +70,123 @@ pub(crate) enum Extent {
     Other,
 }
 
+impl Piece {
+    /// The plane.
+    pub(crate) fn plane() -> Self {
+        Self {
+            kind: PieceKind::Plane,
+            ..Self::convex(vec![Vector::default()], vec![], Symmetric::default())
+        }
+    }
+
+    fn ball(centre: Vector, radius: f64) -> Self {
+        let square = radius * radius;
+        Self {
+            kind: PieceKind::Ball(centre, radius),
+            reach: centre.norm(),
+            ..Self::convex(
+                vec![centre],
+                vec![Feature::new(centre, &[])],
+                Symmetric::diagonal([square; 3]),
+            )
+        }
+    }
+
+    fn convex(corners: Vec<Vector>, features: Vec<Feature>, round: Symmetric) -> Self {
+        let far = corners
+            .iter()
+            .map(|corner| corner.norm())
+            .fold(0.0, f64::max);
+        let ([a, b, c], _) = round.principal();
+        Self {
+            kind: PieceKind::Convex,
+            corners,
+            features,
+            round,
+            reach: far + a.max(b).max(c).max(0.0).sqrt(),
+        }
+    }
+
+    /// A segment rounded by a ball, or by a disc across it, whose flat sides are faces.
+    fn rod(ends: [Vector; 2], radius: f64, flat: bool) -> Self {
+        let along = ends[1] - ends[0];
+        let axis = along / along.norm();
+        let mut features = vec![Feature::new(ends[0], &[along])];
+        features.extend(ends.map(|end| Feature::new(end, &[])));
+        let square = radius * radius;
+        let mut round = Symmetric::diagonal([square; 3]);
+        if flat {
+            round = round + Symmetric::square(axis, -square);
+            let aside = if axis.x.abs() < 0.5 {
+                Vector::new(1.0, 0.0, 0.0)
+            } else {
+                Vector::new(0.0, 1.0, 0.0)
+            };
+            let across = axis.cross(aside);
+            let [x, y] = [across, axis.cross(across)];
+            features.push(Feature::new(ends[1], &[x, y]));
+            features.push(Feature::new(ends[0], &[y, x]));
+        }
+        Self::convex(ends.to_vec(), features, round)
+    }
+
+    fn polyhedron(corners: Vec<Vector>) -> Option<Self> {
+        let triangles = convex_hull(&corners)?;
+        let mut features: Vec<Feature> = corners.iter().map(|&at| Feature::new(at, &[])).collect();
+        let mut edges: Vec<([usize; 2], Vector)> = Vec::new();
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|i| corners[i]);
+            let (e, f) = (b - a, c - a);
+            // The centre of mass is inside.
+            let outward = e.cross(f).dot(a) > 0.0;
+            let face = Feature::new(a, &if outward { [e, f] } else { [f, e] });
+            let normal = face.normal?;
+            let is_new = |other: &Feature| other.normal.is_none_or(|n| n.dot(normal) < 1.0 - 1e-12);
+            if features.iter().all(is_new) {
+                features.push(face);
+            }
+            // The numbers of a triangle ascend.
+            for [i, j] in [[0, 1], [1, 2], [0, 2]] {
+                let ends = [triangle[i], triangle[j]];
+                let Some(place) = edges.iter().position(|edge| edge.0 == ends) else {
+                    edges.push((ends, normal));
+                    continue;
+                };
+                // An edge between two triangles of one face is none.
+                if edges.swap_remove(place).1.dot(normal) < 1.0 - 1e-12 {
+                    let [from, to] = ends.map(|end| corners[end]);
+                    features.push(Feature::new(from, &[to - from]));
+                }
+            }
+        }
+        Some(Self::convex(corners, features, Symmetric::default()))
+    }
+
+    /// The support in a direction of any length, and the place of the point that lies farthest; of several corners that which moves farthest as the
+    /// direction changes by `turning`.
+    #[inline(always)]
+    pub(crate) fn support(&self, u: Vector, turning: Vector) -> (f64, Vector) {
+        let mut best = (f64::NEG_INFINITY, self.corners[0]);
+        let tie = 1e-12 * self.reach * u.norm();
+        for &corner in &self.corners {
+            let height = u.dot(corner);
+            if height > best.0 + tie
+                || height > best.0 - tie && turning.dot(corner) > turning.dot(best.1)
+            {
+                best = (height.max(best.0), corner);
+            }
+        }
+        let pushed = self.round * u;
+        let square = u.dot(pushed);
+        if square > 0.0 {
+            let size = square.sqrt();
+            (best.0 + size, best.1 + pushed / size)
+        } else {
+            best
+        }
+    }
+}
+
 impl AnyBody<'_> {
     /// The parts with which it touches another body; `name` is for the error.
     pub(crate) fn pieces(&self, name: &'static str) -> Result<Vec<Piece>, Error> {
@@ -54,35 +197,77 @@ impl AnyBody<'_> {
         found.ok_or_else(|| Error::Parameter {
             name,
             value: Value::Name("this body".into()),
-            allowed:
-                "a body made of balls (Dumbbell, LoadedSphere, Clump, or these with asperities)"
-                    .into(),
+            allowed: "made of balls, an ellipsoid, a convex polyhedron, a cylinder or a spherocylinder: \
+                      the surface of another is not known where it is not on its convex hull, or not yet followed"
+                .into(),
         })
     }
 }
 
 fn of_solid(solid: &Solid) -> Option<Vec<Piece>> {
-    let balls = solid.scaled.hull.balls()?;
-    if solid.is_filled && balls.len() > 1 {
-        return None;
-    }
-    let piece = |Ball { offset, radius }: Ball| {
-        let place = Vector::new(0.0, 0.0, solid.unit * offset);
-        Piece::Ball(BallPiece::new(place, solid.unit * radius))
+    let Some(balls) = solid.scaled.hull.balls() else {
+        let [across, along] = solid.scaled.hull.semi_axes()?.map(|axis| axis * solid.unit);
+        return Some(vec![ellipsoid(
+            [across, across, along],
+            Quaternion::IDENTITY,
+            Vector::default(),
+        )]);
     };
-    Some(balls.into_iter().map(piece).collect())
+    let place = |ball: &Ball| Vector::new(0.0, 0.0, solid.unit * ball.offset);
+    if let (true, [one, two]) = (solid.is_filled, &balls[..])
+        && one.offset != two.offset
+    {
+        let ends = [place(two), place(one)];
+        return Some(vec![Piece::rod(ends, solid.unit * one.radius, false)]);
+    }
+    let piece = |ball: &Ball| Piece::ball(place(ball), solid.unit * ball.radius);
+    let count = if solid.is_filled { 1 } else { balls.len() };
+    Some(balls[..count].iter().map(piece).collect())
+}
+
+/// An ellipsoid whose axes and centre are these in those of the body.
+fn ellipsoid(semi_axes: [f64; 3], axes: Quaternion, centre: Vector) -> Piece {
+    let round = Symmetric::turned(semi_axes.map(|axis| axis * axis), axes);
+    Piece::convex(vec![centre], vec![Feature::new(centre, &[])], round)
 }
 
 fn of_rigid(body: &Rigid) -> Option<Vec<Piece>> {
+    let unit = body.unit;
     match (&body.skin, body.extent) {
         (RigidSurface::Points(balls), Extent::Balls) => {
-            let piece = |point: &super::Point| {
-                Piece::Ball(BallPiece::new(
-                    point.place * body.unit,
-                    point.radius * body.unit,
-                ))
-            };
+            let piece = |point: &super::Point| Piece::ball(point.place * unit, point.radius * unit);
             Some(balls.points().iter().map(piece).collect())
+        }
+        (RigidSurface::Points(points), Extent::Hull) => {
+            let corners = points.points().iter().map(|point| point.place * unit);
+            Some(vec![Piece::polyhedron(corners.collect())?])
+        }
+        (RigidSurface::Convex(Convex { surface, frame, .. }), Extent::Hull) => {
+            let (axes, centre) = match frame {
+                Some(frame) => (frame.axes.inverse(), frame.place(Vector::default())),
+                None => (Quaternion::IDENTITY, Vector::default()),
+            };
+            match surface {
+                ConvexSurface::Ellipsoid(semi_axes) => Some(vec![ellipsoid(
+                    semi_axes.map(|axis| axis * unit),
+                    axes,
+                    centre * unit,
+                )]),
+                ConvexSurface::Bands(bands) => match &bands[..] {
+                    // A cylinder.
+                    [one, two]
+                        if one.radius == 0.0
+                            && two.radius == 0.0
+                            && one.centre[1] == two.centre[1] =>
+                    {
+                        let end = |z: f64| (centre + axes.rotate(Vector::new(0.0, 0.0, z))) * unit;
+                        let ends = [two, one].map(|band| end(band.centre[0]));
+                        Some(vec![Piece::rod(ends, one.centre[1] * unit, true)])
+                    }
+                    _ => None,
+                },
+                ConvexSurface::Superellipsoid(_) => None,
+            }
         }
         _ => None,
     }

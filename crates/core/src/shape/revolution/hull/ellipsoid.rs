@@ -38,6 +38,12 @@ impl Ellipsoid {
         }
     }
 
+    /// a and c.
+    pub(super) fn semi_axes(&self) -> [f64; 2] {
+        let a = self.equatorial;
+        [a, a.mul_add(a, self.excess).sqrt()]
+    }
+
     /// h, from h² = a²(1 − e_z²) + c²e_z²: a sum of positive terms, in which no digits cancel.
     #[inline(always)]
     fn support<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K> {

@@ -232,6 +232,14 @@ impl Surface {
         }
     }
 
+    /// The semi-axes across and along the axis of an ellipsoid, if it is one.
+    pub(crate) fn semi_axes(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Ellipsoid(hull) => Some(hull.semi_axes()),
+            _ => None,
+        }
+    }
+
     /// Height at which a sphere touches.
     pub fn touching_height(&self, sphere: Sphere, cos_tilt: f64) -> f64 {
         with_hull!(self, hull => hull.touching_height(&named(hull, sphere), one(cos_tilt)).as_slice()[0])
