@@ -1,5 +1,5 @@
 // A gas of soft spheres whose ε is drawn from p(ε | v) at the onset of each contact and kept until it ends.
-// g++ -O3 -o soft_spheres soft_spheres.cpp; ./soft_spheres drawn | clipped | CONSTANT, speed in m/s, time in s
+// g++ -O3 -o soft_spheres soft_spheres.cpp; ./soft_spheres drawn | clipped | CONSTANT, speed in m/s, time in s, seed
 #include "grain.h"  // written by soft_spheres.py: double grain_sample(v, u1, u2)
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ int main(int, char **argv)
     const double K = 0.5 * PI * PI / (CONTACT * CONTACT), DT = CONTACT / STEPS;  // of spheres of mass 1: m* = 1/2
     const std::string mode = argv[1];
     const double speed = std::atof(argv[2]), until = std::atof(argv[3]);
-    std::mt19937_64 random(1);
+    std::mt19937_64 random(std::atoi(argv[4]));
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> uniform;
     std::vector<std::array<double, 3>> x(N), v(N), f(N);

@@ -12,6 +12,7 @@ import numpy as np
 import restitution as rs
 
 CONTACT = 1e-4  # s, an elastic contact
+SEEDS = 6  # gases of each kind
 
 
 def rebound(epsilon: np.ndarray, steps: int, *, pulls: bool = True) -> np.ndarray:
@@ -50,9 +51,17 @@ def main() -> None:
         program = Path(folder) / "soft_spheres"
         subprocess.run(["g++", "-O3", "-std=c++17", f"-I{folder}", "-o", program, source], check=True)
         for mode, speed in (("drawn", "0.4"), ("drawn", "0.1"), ("clipped", "0.4"), ("0.9", "0.4")):
-            told = subprocess.run([program, mode, speed, "2"], check=True, capture_output=True, text=True)
-            print(f"{mode} from {speed} m/s: s, m/s, contacts of a sphere, share below 0.05")
-            print(told.stdout)
+            gases = []
+            for seed in range(1, SEEDS + 1):
+                how = [program, mode, speed, "2", str(seed)]
+                told = subprocess.run(how, check=True, capture_output=True, text=True).stdout
+                gases.append([line.split() for line in told.splitlines()])
+            rows = np.array(gases, dtype=float)
+            print(
+                f"{mode} from {speed} m/s: s; m/s, contacts of a sphere, share below 0.05, and their errors"
+            )
+            error = rows.std(axis=0, ddof=1) / np.sqrt(SEEDS)
+            print(np.column_stack([rows.mean(axis=0), error[:, 1:]]).round(4))
 
 
 if __name__ == "__main__":

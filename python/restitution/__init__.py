@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from restitution.drop.budget import energy_budget
     from restitution.drop.clusters import ClusterWarning, clusters
     from restitution.drop.compare import compare
-    from restitution.drop.energy import EnergyWarning
-    from restitution.drop.pulls import PullWarning
+    from restitution.drop.energy import EnergyWarning, PullWarning
     from restitution.drop.reduce import reduce
     from restitution.drop.release import RandomHeight, RandomSpin
     from restitution.drop.resting import resting
@@ -111,11 +110,11 @@ _HOMES = {
     "compare": "drop.compare",
     "clusters": "drop.clusters",
     "ClusterWarning": "drop.clusters",
-    "PullWarning": "drop.pulls",
     "energy_budget": "drop.budget",
     "explore": "explorer",
     "posterior": "experiment.inference",
     "EnergyWarning": "drop.energy",
+    "PullWarning": "drop.energy",
     "RandomHeight": "drop.release",
     "RandomSpin": "drop.release",
     "reduce": "drop.reduce",

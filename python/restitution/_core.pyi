@@ -15,6 +15,7 @@ __all__ = [
     "MOST_RADIANS",
     "ORIENTATIONS",
     "PADE",
+    "PULLS",
     "STOP_REASONS",
     "Counter",
     "Histogram",
@@ -46,6 +47,7 @@ __all__ = [
 ]
 
 CREATES_ENERGY: float
+PULLS: float
 LARGEST_RESTITUTION: float
 MOST_RADIANS: float
 ORIENTATIONS: list[str]

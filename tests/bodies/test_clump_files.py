@@ -152,6 +152,26 @@ def test_arguments_that_cannot_be_are_refused_by_name(tmp_path: Path) -> None:
         rs.Clump.from_file(tmp_path / "none")
 
 
+def test_rows_of_points_and_profiles(tmp_path: Path) -> None:
+    """As from a measured outline; in a file of a run as a clump is."""
+    head = '[law]\ntype = "frictionless"\nnormal = 0.9\n[body]\nscale = 1e-3\nfile = "rows.csv"\n'
+    rows, run = tmp_path / "rows.csv", tmp_path / "run.toml"
+    rows.write_text("# z r in mm\n-2, 3.5\n-1.2, 5\n1.2, 5\n2, 3.5\n", encoding="utf-8")
+    tablet = rs.Revolution(profile=1e-3 * np.array([(-2, 3.5), (-1.2, 5), (1.2, 5), (2, 3.5)]))
+    run.write_text(f'{head}shape = "revolution"\n', encoding="utf-8")
+    assert read(run).body == rs.Revolution.from_file(rows, scale=1e-3) == tablet
+    rows.write_text("-2 3.5\n-1.2 5 1\n", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"rows\.csv, line 2: '-1\.2 5 1': must be z r, with spaces"):
+        rs.Revolution.from_file(rows)
+    rows.write_text("0 1\n1 -1\n", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"rows\.csv: profile\[1, 1\] = -1"):
+        rs.Revolution.from_file(rows)
+    corners = [(0, 0, 0), (6, 0, 0), (0, 6, 0), (0, 0, 6)]
+    rows.write_text("\n".join(" ".join(map(str, corner)) for corner in corners), encoding="utf-8")
+    run.write_text(f'{head}shape = "convex-polyhedron"\n', encoding="utf-8")
+    assert read(run).body == rs.ConvexPolyhedron(1e-3 * np.array(corners))
+
+
 def test_a_file_of_a_run_names_that_of_its_clump(tmp_path: Path) -> None:
     """Beside it, with the arguments of `from_file`; what it takes besides is refused by name."""
     stone, run = written(tmp_path, MERCURY), tmp_path / "run.toml"

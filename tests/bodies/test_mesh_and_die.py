@@ -185,6 +185,14 @@ def test_files_that_hold_no_closed_mesh_are_refused(tmp_path: Path, monkeypatch:
         ValueError, match=rf"{open_}: triangles = .*: must be .* not closed at 4 edges, of which the first"
     ):
         rs.Mesh.from_file(open_, scale=1e-3)
+    inverted = tmp_path / "inverted.stl"
+    lines = text.splitlines()
+    places = [k for k, line in enumerate(lines) if "vertex" in line]
+    for one, other in zip(places[::3], places[1::3], strict=False):
+        lines[one], lines[other] = lines[other], lines[one]
+    inverted.write_text("\n".join(lines))
+    with pytest.raises(ValueError, match=rf"{inverted}: triangles = .* trimesh\.repair\.fix_inversion"):
+        rs.Mesh.from_file(inverted, scale=1e-3)
     broken = tmp_path / "broken.ply"
     broken.write_text("ply\nformat ascii 1.0\n")
     with pytest.raises(ValueError, match=f"{broken}: "):

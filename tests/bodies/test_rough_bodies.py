@@ -263,3 +263,13 @@ def test_rough_bodies_that_cannot_be_are_refused_by_name(changed: dict[str, Any]
 def test_only_bodies_of_spheres_are_made_rough() -> None:
     with pytest.raises(ValueError, match=r"body = .*must be a Dumbbell, LoadedSphere"):
         rs.Rough(rs.Spheroid(equatorial=R, polar=2 * R), asperities=10, asperity_radius=RHO)
+
+
+@pytest.mark.parametrize(
+    "heights", [2.1 * RHO, [RHO, 2.1 * RHO], ("exponential", 2.1 * RHO), ("power", 2.0, 2.1 * RHO, 4 * RHO)]
+)
+def test_asperities_that_would_float_are_refused(heights: Any) -> None:
+    """As `rough_contact` refuses them: an asperity whose top is higher than its diameter touches nothing."""
+    with pytest.raises(ValueError, match=r"heights = .*: must be .* nor than twice asperity_radius"):
+        _ = sphere(2, heights=heights).mass
+    _ = sphere(2, heights=2.0 * RHO).mass

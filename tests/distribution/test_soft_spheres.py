@@ -39,7 +39,9 @@ def test_the_gas(mode: str, low: float, high: float, tmp_path: Path) -> None:
     source, program = FOLDER / "soft_spheres.cpp", tmp_path / "soft_spheres"
     compiler = ["g++", "-O2", "-std=c++17", "-Wall", "-Werror", f"-I{tmp_path}"]
     subprocess.run([*compiler, "-o", program, source], check=True)
-    told = subprocess.run([program, mode, "0.4", "0.03"], check=True, capture_output=True, text=True).stdout
+    told = subprocess.run(
+        [program, mode, "0.4", "0.03", "1"], check=True, capture_output=True, text=True
+    ).stdout
     rows = np.array([line.split() for line in told.splitlines()], dtype=float)
     assert rows[-1, 2] > 0.5
     assert low < rows[-1, 1] / rows[0, 1] < high

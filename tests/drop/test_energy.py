@@ -161,11 +161,16 @@ def test_no_impact_exceeds_the_bound_at_its_angle(tangential: float) -> None:
     assert (ratio[happened].max() > 1 + 1e-12) == (bound(body, 0.9, tangential) > 1)
 
 
+def recorded(energy_ratio: Any) -> dict[str, Any]:
+    """The ledger of impacts with these energy ratios, in which nothing pulls."""
+    return ledger_of(np.ones_like(energy_ratio), np.ones_like(energy_ratio), energy_ratio)
+
+
 def test_a_gain_of_just_the_bound_is_rounding() -> None:
     """Only what is above 1 + 1e-12 counts as created."""
     bound = 1.0 + 1e-12
-    assert ledger_of(np.array([bound, np.nan, 0.5]))["energy_created_impacts"] == 0
-    assert ledger_of(np.array([np.nextafter(bound, 2.0), np.nan, 0.5]))["energy_created_impacts"] == 1
+    assert recorded(np.array([bound, np.nan, 0.5]))["energy_created_impacts"] == 0
+    assert recorded(np.array([np.nextafter(bound, 2.0), np.nan, 0.5]))["energy_created_impacts"] == 1
 
 
 @pytest.mark.parametrize(
@@ -199,10 +204,10 @@ def test_a_factor_never_reads_as_one() -> None:
 def test_a_run_without_impacts_has_a_ledger() -> None:
     """No share of nothing, and no factor."""
     empty = {"all_impacts": 0, "energy_created_impacts": 0, "energy_created_share": 0.0}
-    assert ledger(0, 0, np.nan) == empty
-    assert ledger(1, 1, 2.0)["energy_created_share"] == 1.0
-    assert ledger_of(np.full((2, 3), np.nan)) == empty
-    assert ledger_of(np.array([[0.5, np.nan], [1.0, 1 + 4e-12]])) == {
+    assert ledger(0, 0, np.nan, 0) == empty
+    assert ledger(1, 1, 2.0, 0)["energy_created_share"] == 1.0
+    assert recorded(np.full((2, 3), np.nan)) == empty
+    assert recorded(np.array([[0.5, np.nan], [1.0, 1 + 4e-12]])) == {
         "all_impacts": 3,
         "energy_created_impacts": 1,
         "energy_created_share": 1 / 3,

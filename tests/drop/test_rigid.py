@@ -278,6 +278,7 @@ def test_rotations_of_scipy_are_attitudes() -> None:
     ],
     ids=["ellipsoid", "box", "clump"],
 )
+@pytest.mark.filterwarnings("ignore:.*away from others")
 def test_rounding_creates_no_energy(body: Any) -> None:
     """Of needles: the spin about the long axis has a rounding error, which is no work."""
     data = rs.simulate(body, rs.Frictionless(normal=1.0), particles=50, impacts=50)

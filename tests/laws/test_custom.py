@@ -365,6 +365,21 @@ def test_one_rule_for_impulses_that_pull(body: Any) -> None:
             data = rs.simulate(body, law, **how)
         assert data.attrs["pulling_impacts"] > 0
     assert data.attrs["pulling_impacts"] == pytest.approx(sum(pulled), abs=0.02 * sum(pulled))
+    bins = {"velocity_bins": np.linspace(-1.0, 2.0, 4), "restitution_bins": np.linspace(-1.0, 3.0, 5)}
+    data = rs.simulate(body, known, **how)
+    for more in ({}, {"counts_only": True}):
+        with pytest.warns(rs.PullWarning, match="let the plane pull") as told:
+            found = rs.statistics(body, known, **how, **bins, **more)
+        assert [one.category for one in told].count(rs.PullWarning) == 1
+        assert found.attrs["pulling_impacts"] == data.attrs["pulling_impacts"]
+    assert rs.reduce(data, **bins).attrs["pulling_impacts"] == data.attrs["pulling_impacts"]
+    laws = {"paper": known, "smooth": rs.Frictionless(normal=0.5)}
+    with pytest.warns(rs.PullWarning, match=r"^paper let the plane pull in up to .* of the impacts of a run"):
+        both = rs.compare({"one": body}, laws, **how, **bins)
+    assert both["pulling_impacts"].values.tolist() == [[data.attrs["pulling_impacts"], 0]]
+    with pytest.warns(rs.PullWarning, match="let the plane pull"):
+        dist = rs.FluctuatingRestitution.learn(body, known, particles=2000, spin=how["spin"])
+    assert dist.data.attrs["pulling_impacts"] > 0
     for clipped in (rs.CustomLaw(known, pull="clip"), rs.CustomLaw(function, pull="clip")):
         data = rs.simulate(body, clipped, **how)
         assert "pulling_impacts" not in data.attrs

@@ -13,6 +13,7 @@ from reference import measuring
 from reference.command import Program, invoke
 from reference.studies import SMALL_STUDY, bits, written
 from restitution.study import Refused, estimate, merge, status, study_of, sweep
+from restitution.study._results import study_in
 
 BINS = {
     "velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
@@ -319,3 +320,39 @@ def test_studies_compare_and_hash_by_what_they_are() -> None:
     assert hash(one) == hash(same)
     assert one != other
     assert one != "study"
+
+
+def test_several_bodies(tmp_path: Path) -> None:
+    """Each with the bits of a study of its own; in a file with their names, and again from the store."""
+    bodies = {"round": rs.Dumbbell(radius=3e-3, separation=3e-4), "a box": rs.Box(a=6e-3, b=5e-3, c=4e-3)}
+    rest = {
+        "law": rs.Frictionless(normal=0.9),
+        "run": {"particles": 32, "impacts": 5, "orientation": "isotropic"},
+        "statistics": {"restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
+    }
+    found = rs.sweep({"body": bodies, "sweep": {"law.normal": [0.8, 0.9]}, **rest}, out=tmp_path / "all")
+    assert found["mean_restitution"].dims == ("body", "normal", "impact")
+    assert found["body"].values.tolist() == [0.0, 1.0]
+    assert found["body"].attrs["flag_meanings"] == "round a_box"
+    for i, body in enumerate(bodies.values()):
+        alone = rs.sweep({"body": body, "sweep": {"law.normal": [0.8, 0.9]}, **rest}, out=tmp_path / str(i))
+        np.testing.assert_array_equal(found["mean_restitution"][i], alone["mean_restitution"])
+    again = study_in(tmp_path / "all")
+    assert list(again.bodies.values()) == list(bodies.values())
+    assert "at body = 'a box'" in again.where(2)
+    assert study_of({"body": list(bodies.values()), **rest}).design.dims == ("body",)
+    file = tmp_path / "study.toml"
+    file.write_text(
+        '[[body]]\nname = "thick"\nshape = "dumbbell"\nradius = 3e-3\nseparation = 1e-3\n'
+        '[[body]]\nname = "long"\nshape = "dumbbell"\nradius = 3e-3\nseparation = 6e-3\n'
+        '[law]\ntype = "frictionless"\nnormal = 0.9\n[first_impact]\n',
+        encoding="utf-8",
+    )
+    assert list(study_of(file).bodies) == ["thick", "long"]
+    for more, message in (
+        ({"sweep": {"body.radius": [1e-3, 2e-3]}}, r"sweep\.body"),
+        ({"sweep": {"design": "sobol", "points": 2, "law.normal": {"from": 0.5, "to": 0.9}}}, r"'grid'"),
+        ({"body": [bodies["round"]]}, "body = "),
+    ):
+        with pytest.raises(ValueError, match=message):
+            study_of({"body": bodies, **rest, **more})

@@ -67,6 +67,9 @@ pub enum Error {
         /// The reason.
         fault: Fault,
     },
+    /// The work was cancelled before it had a result.
+    #[error("cancelled")]
+    Cancelled,
     /// The contact search of one particle, or the friction at the contact that it found, did not converge.
     #[error(
         "particle {particle} (seed {seed}): the contact search, or the friction of the impact, did not converge in flight {flight}; \

@@ -2,6 +2,8 @@
 
 use crate::Error;
 use crate::simd::Level;
+use std::cell::RefCell;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Threads and vector instructions of a run; the result does not depend on them.
@@ -26,7 +28,7 @@ impl Default for Resources {
 /// Progress and cancellation of a run, shared with the thread that started it.
 #[derive(Default)]
 pub struct Monitor {
-    cancelled: AtomicBool,
+    cancelled: Arc<AtomicBool>,
     finished: AtomicU64,
     attend: Option<Box<Attend>>,
 }
@@ -48,6 +50,14 @@ impl Monitor {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
+    /// Makes a body: its long loops end with [`Error::Cancelled`] once this is cancelled.
+    pub fn over<R>(&self, work: impl FnOnce() -> R) -> R {
+        CANCELLED.set(Some(self.cancelled.clone()));
+        let result = work();
+        CANCELLED.set(None);
+        result
+    }
+
     /// Number of particles that are finished.
     pub fn finished(&self) -> u64 {
         self.finished.load(Ordering::Relaxed)
@@ -64,6 +74,24 @@ impl Monitor {
         }
         self.cancelled.load(Ordering::Relaxed)
     }
+}
+
+thread_local! {
+    /// Of the monitor over what is being made on this thread, if there is one. Bodies are made by functions in a table, through which few would
+    /// hand it on.
+    static CANCELLED: RefCell<Option<Arc<AtomicBool>>> = const { RefCell::new(None) };
+}
+
+/// Fails once what is being made on this thread is cancelled.
+pub(crate) fn go_on() -> Result<(), Error> {
+    let cancelled = |flag: &Option<Arc<AtomicBool>>| {
+        flag.as_ref()
+            .is_some_and(|flag| flag.load(Ordering::Relaxed))
+    };
+    if CANCELLED.with_borrow(cancelled) {
+        return Err(Error::Cancelled);
+    }
+    Ok(())
 }
 
 /// Bytes of the stack of a thread that the core or the binding starts, independent of `RUST_MIN_STACK`.

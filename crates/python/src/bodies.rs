@@ -2,12 +2,13 @@
 
 use crate::describe::{Given, arguments};
 use crate::errors::python_error;
+use crate::watch;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyLookupError;
 use pyo3::prelude::*;
 use restitution_core::{
-    AnyBody, BODIES, BodyKind, Form, Heights, Inertia, Quaternion, RigidBall, Roughness, Symmetric,
-    Vector, collected, convex_hull,
+    AnyBody, BODIES, BodyKind, Error, Form, Heights, Inertia, Quaternion, RigidBall, Roughness,
+    Symmetric, Vector, collected, convex_hull,
 };
 
 /// A body of revolution, ready for a run.
@@ -189,8 +190,13 @@ impl Rigid {
     }
 }
 
-fn rigid(body: Result<restitution_core::Rigid, restitution_core::Error>) -> PyResult<Rigid> {
-    Ok(Rigid(body.map_err(python_error)?))
+/// A body that may take long to make; Ctrl-C ends it.
+fn made(
+    py: Python<'_>,
+    make: impl FnOnce() -> Result<restitution_core::Rigid, Error> + Send,
+) -> PyResult<Rigid> {
+    let (body, interrupt) = watch::run(py, None, |monitor| monitor.over(make))?;
+    interrupt.map_or(Ok(Rigid(body)), Err)
 }
 
 /// Mass, centre of mass and tensor of inertia about it, of a body that is not homogeneous.
@@ -250,6 +256,7 @@ fn turned<'py>(
 /// Balls with a given inertia, and asperities on their free surface.
 #[pyfunction]
 fn rough(
+    py: Python<'_>,
     spheres: Vec<[f64; 4]>,
     barrel: bool,
     inertia: GivenInertia,
@@ -272,9 +279,9 @@ fn rough(
         radius,
     };
     let balls: Vec<_> = spheres.iter().map(ball).collect();
-    rigid(restitution_core::Rigid::rough(
-        &balls, barrel, inertia, &roughness,
-    ))
+    made(py, || {
+        restitution_core::Rigid::rough(&balls, barrel, inertia, &roughness)
+    })
 }
 
 fn entry(name: &str) -> PyResult<&'static BodyKind> {
@@ -291,7 +298,7 @@ fn body(py: Python<'_>, name: &str, given: Vec<Option<Given<'_>>>) -> PyResult<P
             let made = (kind.make)(&given).map_err(python_error)?;
             Py::new(py, Solid(made))?.into_any()
         }
-        BodyKind::Rigid(kind) => Py::new(py, rigid(kind.body(&given))?)?.into_any(),
+        BodyKind::Rigid(kind) => Py::new(py, made(py, || kind.body(&given))?)?.into_any(),
     })
 }
 

@@ -1,7 +1,7 @@
 //! The core's errors as Python exceptions, with their fields as attributes.
 
 use pyo3::create_exception;
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use restitution_core::{Error, Fault, Raised, Value};
 
@@ -60,6 +60,7 @@ pub fn python_error(error: Error) -> PyErr {
         Error::Law { .. } => PyValueError::new_err(text),
         Error::Numerical { .. } => NumericalError::new_err(text),
         Error::Threads { .. } => PyRuntimeError::new_err(text),
+        Error::Cancelled => PyKeyboardInterrupt::new_err(()),
         Error::Memory { .. } => PyMemoryError::new_err(text),
     }
 }

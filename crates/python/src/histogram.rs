@@ -116,6 +116,7 @@ fn table(py: Python<'_>, counts: core::Histogram) -> PyResult<Bound<'_, PyDict>>
     table.set_item("energy_created", column(py, created)?)?;
     let largest = rows.gains.iter().map(|row| row.largest);
     table.set_item("largest_energy_ratio", column(py, largest)?)?;
+    table.set_item("pulls", rows.pulls)?;
     let stops = rows
         .stops
         .iter()

@@ -18,7 +18,7 @@ use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use restitution_core::statistics::{CREATES_ENERGY, Sums};
+use restitution_core::statistics::{CREATES_ENERGY, PULLS, Sums};
 use restitution_core::{About, Level, Orientation, Resources, Run, StopReason, Vector};
 use std::ops::Range;
 
@@ -117,6 +117,7 @@ fn sincos(x: f64) -> (f64, f64) {
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("CREATES_ENERGY", CREATES_ENERGY)?;
+    module.add("PULLS", PULLS)?;
     module.add("LARGEST_RESTITUTION", Sums::LARGEST)?;
     module.add("MOST_RADIANS", restitution_core::elementary::RANGE)?;
     module.add("ORIENTATIONS", Orientation::NAMED.map(|(name, _)| name))?;

@@ -94,10 +94,10 @@ fn ended<T>(
             .unwrap_or("no message");
         PyRuntimeError::new_err(format!("the core panicked: {message}"))
     })?;
-    let result = result.map_err(python_error)?;
-    match interrupt {
-        Some(error) if !is_keyboard_interrupt(&error) => Err(error),
-        interrupt => Ok((result, interrupt)),
+    match (result, interrupt) {
+        (Err(_), Some(error)) => Err(error),
+        (_, Some(error)) if !is_keyboard_interrupt(&error) => Err(error),
+        (result, interrupt) => Ok((result.map_err(python_error)?, interrupt)),
     }
 }
 

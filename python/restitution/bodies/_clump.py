@@ -69,6 +69,21 @@ class Clump(RigidBody):
     )
     centre: Centre = None
 
+    @property
+    def apart(self) -> str:
+        """Where for more than the largest diameter along x, y or z no sphere is, in words; else empty."""
+        spheres = np.asarray(self.spheres)
+        largest = float(spheres[:, 3].max())
+        for axis, place in zip("xyz", spheres.T[:3], strict=True):
+            order = np.argsort(place - spheres[:, 3])
+            reach = np.maximum.accumulate((place + spheres[:, 3])[order])
+            gaps = (place - spheres[:, 3])[order][1:] - reach[:-1]
+            if gaps.size and gaps.max() > 2.0 * largest:
+                gap, behind = float(gaps.max()), int(order[gaps.argmax() + 1])
+                radii = f"{gap:.3g} m ({gap / largest:.3g} radii)"
+                return f"spheres[{behind}] is {radii} away from others along {axis}"
+        return ""
+
     @classmethod
     def from_file(
         cls,

@@ -50,25 +50,41 @@ class _File(NamedTuple):
         return found
 
 
+def rows_in(path: Path, columns: tuple[str, ...]) -> Spheres:
+    """Read rows with these columns, and nothing else, from a file."""
+    row = " ".join(columns)
+    file = _file(path, f"rows {row}")
+    allowed = f"{row}, with spaces or commas between them"
+    for line in file.lines:
+        if len(line.words) != len(columns):
+            raise file.wrong(line, allowed)
+    return [file.numbers(line, line.words, allowed) for line in file.lines]
+
+
 def read(path: Path, format: Any) -> Spheres:
     """Read the rows (x, y, z, r) of a file; a ParameterError names the line that is none, and why."""
     if format is not None and not (isinstance(format, str) and format in get_args(Format)):
         raise ParameterError(wrong("format", format, f"None, {', '.join(map(repr, get_args(Format)))}"))
+    file = _file(path, "the spheres of a clump, x y z r")
+    reader = {"rows": _rows, "csv": _csv, "lammps": _lammps, "liggghts": _liggghts}[format or _guess(file)]
+    spheres = reader(file)
+    if not spheres:
+        raise file.lacks("no spheres; must have one or more, x y z r")
+    return spheres
+
+
+def _file(path: Path, needed: str) -> _File:
     name, held = str(path), content(path)
     try:
         text = held.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = "\0"
     if "\0" in text:
-        raise ParameterError(Problem(name, ": not a text file; must have the spheres of a clump, x y z r"))
+        raise ParameterError(Problem(name, f": not a text file; must have {needed}"))
     file = _File(name, list(_lines(text)))
     if not file.lines:
-        raise file.lacks("empty; must have the spheres of a clump, x y z r")
-    reader = {"rows": _rows, "csv": _csv, "lammps": _lammps, "liggghts": _liggghts}[format or _guess(file)]
-    spheres = reader(file)
-    if not spheres:
-        raise file.lacks("no spheres; must have one or more, x y z r")
-    return spheres
+        raise file.lacks(f"empty; must have {needed}")
+    return file
 
 
 def _lines(text: str) -> Iterator[_Line]:

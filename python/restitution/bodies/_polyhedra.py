@@ -6,12 +6,12 @@ from pydantic import Field
 
 from restitution import _core
 from restitution._internal.parameters import Allowed
-from restitution.bodies._rigid import Density, Length, Matter, rows
+from restitution.bodies._rigid import Density, FromRows, Length, Matter, rows
 
 _POINTS = "four or more points (x, y, z) in m, finite, not all in one plane"
 
 
-class ConvexPolyhedron(Matter):
+class ConvexPolyhedron(FromRows):
     """The homogeneous convex hull of points.
 
     Parameters
@@ -35,6 +35,7 @@ class ConvexPolyhedron(Matter):
     """
 
     by_place: ClassVar[tuple[str, ...]] = ("points",)
+    columns: ClassVar[tuple[str, ...]] = ("x", "y", "z")
 
     points: Annotated[Any, Allowed(_POINTS), rows(_POINTS, 3, 4), Field(description="m")]
     density: Density = 2500.0

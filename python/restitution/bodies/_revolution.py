@@ -7,7 +7,7 @@ from pydantic import Field
 
 from restitution._internal.arrays import FloatArray
 from restitution._internal.parameters import Allowed, Number
-from restitution.bodies._rigid import Density, Length, Matter, rows
+from restitution.bodies._rigid import Density, FromRows, Length, Matter, rows
 
 _PROFILE = "two or more points (z, r) in m, finite, r >= 0, around an area"
 
@@ -16,7 +16,7 @@ class Turned(Matter):
     """A solid of revolution about z of the body: circles, or bands, about its axis touch."""
 
 
-class Revolution(Turned):
+class Revolution(FromRows, Turned):
     """A homogeneous solid of revolution with any profile.
 
     Its axis is z of the body. Only its convex hull touches the plane, with circular rims; `contact` numbers
@@ -45,6 +45,7 @@ class Revolution(Turned):
     """
 
     by_place: ClassVar[tuple[str, ...]] = ("profile",)
+    columns: ClassVar[tuple[str, ...]] = ("z", "r")
 
     profile: Annotated[
         Any,

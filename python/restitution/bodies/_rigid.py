@@ -1,18 +1,29 @@
 """The base of the rigid bodies of any shape."""
 
+import os
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, ValidationInfo
 
 from restitution import _core
+from restitution._internal import files
 from restitution._internal import text as _text
 from restitution._internal.arrays import FloatArray, check_each, real, reals
-from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, shown, wrong
+from restitution._internal.parameters import (
+    Allowed,
+    Number,
+    ParameterError,
+    Problem,
+    renamed,
+    shown,
+    wrong,
+)
 from restitution.bodies._body import AnyBody
+from restitution.bodies._clump_files import rows_in
 
 Density = Annotated[Number, Field(gt=0, description="kg/m³")]
 Length = Annotated[Number, Field(gt=0, description="m")]
@@ -162,6 +173,48 @@ class Matter(RigidBody):
 
     inertia: Tensor = None
     centre: Centre = None
+
+
+class FromRows(Matter):
+    """A body whose first parameter is a table of places in m, which a file may hold."""
+
+    columns: ClassVar[tuple[str, ...]]
+    density: Density = 2500.0
+
+    @classmethod
+    def from_file(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        scale: float = 1.0,
+        density: float = 2500.0,
+        inertia: Any = None,
+        centre: Any = None,
+    ) -> Self:
+        """Read the table from a file.
+
+        Parameters
+        ----------
+        path : str or path-like
+            A text file with a row a line, numbers with spaces or commas between them. What follows a ``#`` is
+            a comment.
+        scale : float, default 1
+            What a unit of the file is in m: 1e-3 for millimetres. > 0.
+        density, inertia, centre
+            As those of the body.
+
+        Raises
+        ------
+        ValueError
+            If a row is malformed; the message names its line.
+        OSError
+            If the file cannot be read.
+        """
+        unit, place = scale_of(scale), files.path_from("path", path)
+        table = unit * np.array(rows_in(place, cls.columns))
+        own = cls.by_place[0]
+        with renamed(lambda name: f"{place}: {name}" if name.startswith(own) else name):
+            return cls(**{own: table}, density=density, inertia=inertia, centre=centre)
 
 
 def plain(value: Any) -> Any:

@@ -113,10 +113,11 @@ class RoughSphere(RigidBody):
     asperity_radius : float
         Radius ρ of each, in m; > 0 and at most R.
     heights : float, array_like or tuple, optional
-        How far the tops stand above the surface, in m, >= 0 and at most R: all alike, or one each, or drawn
+        How far the tops stand above the surface, in m, >= 0, at most R and 2ρ: all alike, one each, or drawn
         from ``("exponential", mean)``, ``("normal", mean, deviation)`` where it is not negative, or
         ``("power", exponent, least, most)``, a density proportional to height to the power -exponent. ρ if
-        it is left out: half-balls.
+        it is left out: half-balls. Of a distribution, of which the mean or the least is at most 2ρ, single
+        ones may be above 2ρ: tops of higher asperities, whose stems nothing touches.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
     seed : int, default 1

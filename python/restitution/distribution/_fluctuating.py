@@ -143,8 +143,8 @@ class FluctuatingRestitution(EstimatedDistribution):
         DistanceWarning
             If fresh impacts are farther from the result than 0.05 in the sense of Kolmogorov and Smirnov, and
             than 3.5 times what their scatter explains, or than 0.1. docs/theory.md says what to do.
-        EnergyWarning
-            If impacts created kinetic energy: a gas with this distribution may heat itself.
+        EnergyWarning, PullWarning
+            If impacts created kinetic energy, so that a gas of it may heat itself, or let the plane pull.
 
         Examples
         --------

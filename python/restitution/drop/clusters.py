@@ -1,12 +1,11 @@
 """Impacts at one instant, as of a box that lands flat, where the order decides."""
 
-import warnings
-
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.arrays import FloatArray
+from restitution.drop.energy import share, tell
 from restitution.drop.recorded import check_filled, check_successive, pull, records
 
 _INSTANT, _FAST = 1e-9, 0.01
@@ -48,13 +47,13 @@ def warn(data: xr.Dataset, *, stacklevel: int = 2) -> None:
     joined = _joined(time, fall, rise, data.attrs["gravity"])
     if joined.any():
         particle, impact = np.argwhere(joined)[0]
-        warnings.warn(
-            f"particle {particle} struck the plane with several parts at the instant of impact {impact - 1} "
-            f"({np.count_nonzero(joined.any(axis=1))} of {len(joined)} particles did so): one follows the "
-            "other in an order that the model does not decide, and restitution is that of each by itself. "
-            "clusters(data) gives that of all impacts of an instant; a release tilted by 1e-6 rad has an "
-            "order of its own",
+        tell(
             ClusterWarning,
+            "several parts of a body struck the plane at one instant",
+            share(int(np.count_nonzero(joined.any(axis=1))), len(joined), "particles"),
+            f"first at impact {impact - 1} of particle {particle}: one follows the other in an order that "
+            "the model does not decide, and restitution is that of each by itself. clusters(data) gives that "
+            "of all impacts of an instant; a release tilted by 1e-6 rad has an order of its own",
             stacklevel=stacklevel + 1,
         )
 

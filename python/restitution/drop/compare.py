@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 from typing import Any, TypeVar
@@ -15,7 +14,16 @@ from restitution._internal.arrays import several
 from restitution._internal.parameters import ParameterError, Parameters, Problem, shown, wrong
 from restitution._internal.resources import progress_bar
 from restitution.bodies import AnyBody, Rough, RoughSphere
-from restitution.drop.energy import LEDGER, WHY, EnergyWarning, factor, percent, reported_elsewhere
+from restitution.drop.energy import (
+    LEDGER,
+    NO_PULL,
+    EnergyWarning,
+    PullWarning,
+    gains,
+    percent,
+    reported_elsewhere,
+    tell,
+)
 from restitution.drop.simulate import SimulationInterrupted
 from restitution.drop.statistics import statistics
 from restitution.laws import CollisionLaw
@@ -30,6 +38,7 @@ _PER_RUN = {
     "energy_created_impacts": "of these, impacts that multiplied the kinetic energy by more than 1 + 1e-12",
     "energy_created_share": "their share",
     "largest_energy_ratio_of_all": "their largest factor, 1 where there are none",
+    "pulling_impacts": "impacts in which the law let the plane pull",
 }
 
 
@@ -58,7 +67,8 @@ def compare(
     xarray.Dataset
         As from `restitution.statistics`, with dimensions (body, law) first. Over (body, law) also
         ``all_impacts``, ``energy_created_impacts``, ``energy_created_share`` and
-        ``largest_energy_ratio_of_all``; over body and over law ``body_parameters`` and ``law_parameters``.
+        ``largest_energy_ratio_of_all`` and ``pulling_impacts``; over body and over law ``body_parameters``
+        and ``law_parameters``.
         Each parameter in which bodies differ is a coordinate over body, such as ``separation``, each in which
         laws differ over law: ``found.swap_dims(body="separation")`` makes an axis of it. The attributes are
         what all runs share.
@@ -74,8 +84,8 @@ def compare(
 
     Warns
     -----
-    EnergyWarning
-        Once, naming the laws under which impacts created kinetic energy.
+    EnergyWarning, PullWarning
+        Once each, naming the laws that created kinetic energy, or let the plane pull.
 
     Examples
     --------
@@ -206,9 +216,10 @@ def _side_by_side(
         shape = (len(bodies), len(laws), *stacked.shape[1:])
         variables[str(name)] = (("body", "law", *variable.dims), stacked.reshape(shape), variable.attrs)
     for name, text in _PER_RUN.items():
-        # Without any energy created there is no attribute largest_energy_ratio.
+        # There is no attribute largest_energy_ratio where no energy is created, none where nothing pulls.
+        none = 0 if name == "pulling_impacts" else 1.0
         attribute = name.removesuffix("_of_all")
-        values = np.array([run.attrs.get(attribute, 1.0) for run in runs]).reshape(len(bodies), len(laws))
+        values = np.array([run.attrs.get(attribute, none) for run in runs]).reshape(len(bodies), len(laws))
         variables[name] = (("body", "law"), values, {"long_name": text})
     coordinates: dict[str, Any] = {
         "body": list(bodies),
@@ -269,19 +280,15 @@ def _values(one: Parameters) -> Iterator[tuple[str, Any, str]]:
 
 
 def _warn(found: xr.Dataset) -> None:
-    created = found["energy_created_impacts"].sum("body")
-    laws = [str(law) for law in found["law"].values[created > 0]]
-    if laws:
-        share, largest = (
-            float(found["energy_created_share"].max()),
-            float(found["largest_energy_ratio_of_all"].max()),
-        )
-        warnings.warn(
-            f"Impacts created kinetic energy under {', '.join(laws)}: in up to {percent(share)} of the "
-            f"impacts of a run, at most by a factor of {factor(largest)}. {WHY}",
-            EnergyWarning,
-            stacklevel=3,
-        )
+    largest = {"largest_energy_ratio": float(found["largest_energy_ratio_of_all"].max())}
+    for category, did, name, more in (
+        (EnergyWarning, "created kinetic energy", "energy_created_impacts", gains(largest)),
+        (PullWarning, "let the plane pull", "pulling_impacts", NO_PULL),
+    ):
+        laws = [str(law) for law in found["law"].values[found[name].sum("body") > 0]]
+        share = float((found[name] / np.maximum(found["all_impacts"], 1)).max())
+        where = f"in up to {percent(share)} of the impacts of a run" if laws else ""
+        tell(category, f"{', '.join(laws)} {did}", where, more, stacklevel=3)
 
 
 _UNITS = {"m/s": "m s-1", "m/s²": "m s-2", "rad/s": "rad s-1", "kg/m³": "kg m-3"}

@@ -46,7 +46,7 @@ def dataset(
         assert isinstance(body, RigidBody)
         attrs |= {"mass": body.mass, "principal_moments": body.compiled.principal_moments}
         attrs |= {"principal_axes": body.compiled.principal_axes}
-    attrs |= ledger_of(table["energy_ratio"][1])
+    attrs |= ledger_of(*(table[name][1] for name in ("impact_velocity", "restitution", "energy_ratio")))
     reasons = table["stop_reason"][1]
     cut_short = np.count_nonzero(reasons == STOP_REASONS.index("interrupted"))
     done = len(reasons) - cut_short

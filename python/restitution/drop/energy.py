@@ -1,7 +1,7 @@
-"""The energy ledger of every run: which impacts created kinetic energy, and a warning where any did."""
+"""The ledger of every run: impacts that created energy or let the plane pull, and warnings of them."""
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from decimal import Decimal
 from typing import Any
@@ -33,6 +33,26 @@ class EnergyWarning(UserWarning):
     """
 
 
+class PullWarning(UserWarning):
+    """The plane pulled at the body in some impacts of a run, as the collision law demands.
+
+    It does where the body leaves more slowly along the normal, or falls faster, than it would without any
+    impulse: P_n/m is the sum of impact and rebound velocity.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import restitution as rs
+    >>> body = rs.Dumbbell(radius=3e-3, separation=6e-3)
+    >>> law = rs.TangentialRestitution(normal=0.5, tangential=-0.5)
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     data = rs.simulate(body, law, particles=500, impacts=50, spin=(0.0, 30.0, 0.0))
+    >>> caught[-1].category is rs.PullWarning
+    True
+    """
+
+
 def _harmless() -> Iterator[str]:
     """Name the laws that cannot create energy, with the values of a parameter for which they cannot."""
     for law in _core.LAWS:
@@ -49,28 +69,49 @@ WHY = (
     "The law does this, not rounding: gains below 1e-12 are not counted. Laws that cannot: "
     f"{'; '.join(_harmless())}."
 )
-LEDGER = ("all_impacts", "energy_created_impacts", "energy_created_share", "largest_energy_ratio")
-"""The attributes of a result that say how much energy its impacts created."""
+NO_PULL = (
+    "which no plane without adhesion can. The law does this: Frictionless and laws with a cone of friction, "
+    "as Coulomb, cannot. CustomLaw(law, pull='stop' or 'clip') is another rule"
+)
+LEDGER = (
+    "all_impacts",
+    "energy_created_impacts",
+    "energy_created_share",
+    "largest_energy_ratio",
+    "pulling_impacts",
+)
+"""The attributes that say how much energy impacts created, and in how many the plane pulled."""
+_ROWS = 1000
 
 
-def ledger(impacts: int, created: int, largest: float) -> dict[str, Any]:
+def ledger(impacts: int, created: int, largest: float, pulls: int) -> dict[str, Any]:
     """Return the attributes that say how many impacts created energy, their share, and the largest factor.
 
-    The factor has no meaning, and is left out, where no impact created energy.
+    The factor has no meaning, and is left out, where no impact created energy; so is the number of impacts
+    that pull where there are none.
     """
     found: dict[str, Any] = {
         "all_impacts": impacts,
         "energy_created_impacts": created,
         "energy_created_share": created / max(impacts, 1),
     }
-    return found | ({"largest_energy_ratio": largest} if created else {})
+    found |= {"largest_energy_ratio": largest} if created else {}
+    return found | ({"pulling_impacts": pulls} if pulls else {})
 
 
-def ledger_of(energy_ratio: FloatArray) -> dict[str, Any]:
-    """`ledger` of recorded energy ratios, NaN where there was no impact."""
+def ledger_of(
+    impact_velocity: FloatArray, restitution: FloatArray, energy_ratio: FloatArray
+) -> dict[str, Any]:
+    """`ledger` of recorded impacts, NaN where there was none."""
     impacts = energy_ratio.size - int(np.count_nonzero(np.isnan(energy_ratio)))
     created = int(np.count_nonzero(energy_ratio > _core.CREATES_ENERGY))
-    return ledger(impacts, created, float(np.fmax.reduce(energy_ratio, axis=None, initial=np.nan)))
+    pulls = 0
+    for row in range(0, len(restitution), _ROWS):
+        fall = impact_velocity[row : row + _ROWS]
+        with np.errstate(invalid="ignore", over="ignore"):
+            rise = fall * restitution[row : row + _ROWS]
+            pulls += int(np.count_nonzero(fall + rise < -_core.PULLS * (np.abs(fall) + np.abs(rise))))
+    return ledger(impacts, created, float(np.fmax.reduce(energy_ratio, axis=None, initial=np.nan)), pulls)
 
 
 def by_row(row: str, created: IntArray, largest: FloatArray) -> dict[str, Any]:
@@ -85,18 +126,30 @@ def by_row(row: str, created: IntArray, largest: FloatArray) -> dict[str, Any]:
 
 
 def warn(data: xr.Dataset, *, stacklevel: int = 2) -> None:
-    """Warn once if the run behind `data` created energy; `stacklevel` is that of `warnings.warn`."""
+    """Warn once if the run behind `data` created energy, and once if it let the plane pull."""
     about = data.attrs
-    created = about["energy_created_impacts"]
-    if not created:
-        return
-    warnings.warn(
-        f"{about['law']} created kinetic energy in {percent(about['energy_created_share'])} of the impacts "
-        f"({created:,} of {about['all_impacts']:,}), at most by a factor of "
-        f"{factor(about['largest_energy_ratio'])}. {WHY}",
-        EnergyWarning,
-        stacklevel=stacklevel + 1,
-    )
+    law, impacts = about["law"], about["all_impacts"]
+    for category, did, number, more in (
+        (EnergyWarning, "created kinetic energy", about["energy_created_impacts"], gains(about)),
+        (PullWarning, "let the plane pull", about.get("pulling_impacts", 0), NO_PULL),
+    ):
+        tell(category, f"{law} {did}", share(number, impacts, "impacts"), more, stacklevel=stacklevel + 1)
+
+
+def gains(about: Mapping[str, Any]) -> str:
+    """Say by which factor impacts created energy, and why."""
+    return f"at most by a factor of {factor(about.get('largest_energy_ratio', 1.0))}. {WHY}"
+
+
+def share(number: int, of: int, what: str) -> str:
+    """Write how many of all there are; nothing if there are none."""
+    return f"in {percent(number / of)} of the {what} ({number:,} of {of:,})" if number else ""
+
+
+def tell(category: type[Warning], did: str, where: str, more: str, *, stacklevel: int = 2) -> None:
+    """Warn of what happened, unless it happened nowhere; `stacklevel` is that of `warnings.warn`."""
+    if where:
+        warnings.warn(f"{did} {where}, {more}", category, stacklevel=stacklevel + 1)
 
 
 def percent(share: float) -> str:
@@ -112,7 +165,8 @@ def factor(largest: float) -> str:
 
 @contextmanager
 def reported_elsewhere() -> Iterator[None]:
-    """Silence `EnergyWarning` for code that reports the created energy itself; also a decorator."""
+    """Silence what `warn` says for code that reports it itself; also a decorator."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", EnergyWarning)
+        warnings.simplefilter("ignore", PullWarning)
         yield

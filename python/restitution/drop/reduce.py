@@ -120,6 +120,7 @@ def reduce(
         "restitution_count": _grid(row, restitution, defined, rows, columns["restitution"]),
         "fraction_count": _grid(row, fraction, defined, rows, columns["fraction"]),
     }
+    of_all = ledger_of(velocity, restitution, energy)
     created = energy > CREATES_ENERGY
     largest = np.zeros(rows)
     np.maximum.at(largest, row[created], energy[created])
@@ -141,7 +142,7 @@ def reduce(
     found = by_velocity(counts, number, moments, velocity_edges, columns, more)
     content = "statistics of restitution in bins of impact velocity, bins lo <= x < hi"
     how = origin(len(parts), data.sizes["particle"], batches)
-    about = _without_ledger(data) | ledger_of(energy)
+    about = _without_ledger(data) | of_all
     return found.assign_attrs(about, content=content, standard_errors=how)
 
 

@@ -23,7 +23,7 @@ from restitution._internal.parameters import (
     shown,
     wrong,
 )
-from restitution.bodies import ANY_BODIES, AnyBody, Body, RigidBody
+from restitution.bodies import ANY_BODIES, AnyBody, Body, Clump, RigidBody
 from restitution.drop.release import (
     HeightOfRun,
     OrientationOfRun,
@@ -211,7 +211,7 @@ class Run(Parameters):
         return self
 
     def warn_of_units(self) -> None:
-        """Warn of millimetres and degrees: bodies above 1 m, falls above 10 m, angles above 2π.
+        """Warn of millimetres and degrees: bodies above 1 m or in pieces, falls above 10 m, angles above 2π.
 
         Of what a user gave: the package itself also runs bodies of unit size.
         """
@@ -221,6 +221,8 @@ class Run(Parameters):
             in_metres = (field.description or "").split(";")[0] == "m" and length is not None
             if in_metres and name != "heights" and np.max(length) > 1.0:  # heights are below a radius
                 units.append(f"{name} = {shown(length)} is taken in metres")
+        if isinstance(self.body, Clump) and (apart := self.body.apart):
+            units.append(apart)
         if self.heights[1] > 10.0:
             units.append(f"release_height = {self.heights[1]:g} is taken in metres")
         if self.angles is not None and (largest := float(np.abs(self.angles).max())) > 2.0 * math.pi:

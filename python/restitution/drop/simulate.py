@@ -111,8 +111,8 @@ def simulate(
 
     Warns
     -----
-    EnergyWarning
-        Once, if impacts created kinetic energy; see docs/energy.md.
+    EnergyWarning, PullWarning
+        Once each, if impacts created kinetic energy (docs/energy.md), or let the plane pull.
 
     Notes
     -----
@@ -131,13 +131,12 @@ def simulate(
     >>> bool((data.restitution.isel(impact=0) <= 0.98).all())
     True
     """
-    from restitution.drop import clusters, pulls
+    from restitution.drop import clusters
     from restitution.drop.energy import warn
 
     checked = Run.called("simulate", body, law, run)
     data = simulate_run(checked, threads=threads, progress=progress, record=record, until=until)
     warn(data)
-    pulls.warn(data)
     if checked.orientations is not None:  # no random attitude lands flat
         clusters.warn(data)
     return data
@@ -166,7 +165,6 @@ def simulate_run(
     until: Until | None = None,
 ) -> xr.Dataset:
     """`simulate` for parameters that are already checked."""
-    from restitution.drop import pulls
     from restitution.drop.dataset import dataset
     from restitution.drop.resting import settling_height
     from restitution.drop.trajectory import with_positions
@@ -179,7 +177,7 @@ def simulate_run(
     with progress_bar("simulate", run.particles, "particles", show=progress) as tell:
         parameters = run.parameters() | {"settled": settled}
         table, interrupted = _core.simulate(parameters, number, tell, columns=columns)
-    data = pulls.counted(dataset(run, table))
+    data = dataset(run, table)
     if until:
         data = data.assign_attrs(until=until, settling_height=settled)
     if state:

@@ -107,8 +107,8 @@ def statistics(
 
     Warns
     -----
-    EnergyWarning
-        Once, if impacts created kinetic energy; see docs/energy.md.
+    EnergyWarning, PullWarning
+        Once each, if impacts created kinetic energy (docs/energy.md), or let the plane pull.
 
     Examples
     --------
@@ -197,7 +197,7 @@ def dataset_of(run: Run, edges: Edges, table: Table) -> xr.Dataset:
         found = by_velocity(counts, number, moments, velocity, columns, more)
     found.attrs = attributes(run, "Statistics of the impacts of bouncing aspherical particles")
     all_impacts = int(number.sum() + table["count"][:, -1].sum())
-    found.attrs |= ledger(all_impacts, int(created.sum()), float(largest.max()))
+    found.attrs |= ledger(all_impacts, int(created.sum()), float(largest.max()), int(table["pulls"]))
     return found
 
 

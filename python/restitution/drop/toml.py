@@ -119,6 +119,14 @@ def run_of(tables: dict[str, Any], source: str) -> Run:
     return run
 
 
+def bodies_of(tables: list[Any], source: str) -> dict[str, Any]:
+    """Make the bodies of several tables [[body]], by their names; errors begin with `source`."""
+    reader = _Reader({"body": tables})
+    found = reader.several("body", single=False)
+    reader.finish(source)
+    return found
+
+
 def tables_of(run: Run) -> dict[str, Any]:
     """Write a run down as the tables of a file, complete, of plain values."""
     fields = {name: _plain(getattr(run, name)) for name in type(run).model_fields if name not in _PARTS}
@@ -225,7 +233,7 @@ class _Reader:
         """Make one set of parameters from a table and the parts that have tables of their own."""
         make: Any = kind
         fields = [field for field in kind.model_fields if kind is not Run or field not in _PARTS]
-        if "file" in table and hasattr(kind, "from_file"):  # a clump or a mesh
+        if "file" in table and hasattr(kind, "from_file"):  # a clump, points, a profile or a mesh
             make = make.from_file
             fields = [field.replace("path", "file") for field in signature(make).parameters]
         keys = [*selector, *fields]

@@ -74,8 +74,10 @@ class Design:
         return {axis.parameter: axis.values[i] for axis, i in zip(self.axes, index, strict=True)}
 
 
-def design(given: Any, seed: Any) -> Design:
+def design(given: Any, seed: Any, bodies: int = 0) -> Design:
     """Make the points of the table ``[sweep]``; the seed is that of a design that is drawn.
+
+    Where there are several bodies, their numbers from 0 are the first axis.
 
     Parameters are named by their place, each with a list of values or ``{from, to, points, scale}``; a design
     that is not a grid has a number of ``points`` for all of them.
@@ -84,6 +86,13 @@ def design(given: Any, seed: Any) -> Design:
         raise ParameterError(wrong("sweep", given, "a table [sweep]"))
     options = {key: given[key] for key in ("design", "points") if key in given}
     kind = word("sweep.design", options.get("design", "grid"), DESIGNS)
+    if bodies:
+        if kind != "grid":
+            raise ParameterError(wrong("sweep.design", kind, "'grid', because there are several bodies"))
+        if "body" in given:
+            text = ": must be left out, because there are several bodies"
+            raise ParameterError(Problem("sweep.body", text))
+        given = {"body": list(range(bodies)), **given}
     varied = _each_once({key: value for key, value in given.items() if key not in options})
     if not varied:
         text = ': nothing is varied; name parameters, as in "body.separation" = [3e-5, 1e-4]'

@@ -25,7 +25,7 @@ from restitution._internal.files import draft_of, there
 from restitution._internal.process import undisturbed
 from restitution.drop.compare import unit_of
 from restitution.drop.dataset import version_here
-from restitution.study._axes import Design
+from restitution.study._axes import Axis, Design
 from restitution.study._identity import attribute, check, readable
 from restitution.study._point import Words
 from restitution.study._study import Study
@@ -97,7 +97,11 @@ def _fill(path: Path, study: Study, width: int) -> None:
             data=np.array(axis.values, dtype=np.float64),
             chunks=(len(axis.values),),
             dimension_names=(axis.name,) if design.kind == "grid" else ("point",),
-            attributes={"long_name": axis.parameter, "units": unit_at(study, axis.parameter)},
+            attributes={
+                "long_name": axis.parameter,
+                "units": unit_at(study, axis.parameter),
+                **_names(study, axis),
+            },
             fill_value=np.nan,
             compressors=_compressed(8),
         )
@@ -121,6 +125,14 @@ def _fill(path: Path, study: Study, width: int) -> None:
         fill_value=_NO_WORD,  # a chunk of nothing else is not written; zeros may be counted
     )
     Store(path).consolidate()
+
+
+def _names(study: Study, axis: Axis) -> dict[str, Any]:
+    """Return the names of several bodies, as the CF conventions write those of numbers."""
+    if axis.parameter != "body":
+        return {}
+    words = ("_".join(name.split()) for name in study.bodies)
+    return {"flag_values": list(axis.values), "flag_meanings": " ".join(words)}
 
 
 def unit_at(study: Study, parameter: str) -> str:

@@ -24,12 +24,12 @@ from restitution._internal.parameters import (
     unknown,
     wrong,
 )
-from restitution.bodies import RoughSphere
+from restitution.bodies import AnyBody, RoughSphere
 from restitution.drop.bins import edges_from
 from restitution.drop.release import RandomHeight
 from restitution.drop.run import Run
 from restitution.drop.statistics import Edges, edges_of
-from restitution.drop.toml import run_of, table_of, tables_in, tables_of
+from restitution.drop.toml import bodies_of, run_of, table_of, tables_in, tables_of
 from restitution.laws import Material
 from restitution.study._axes import Design, design
 from restitution.study._tables import Effort, Forms, copied, effort, forms_of, table, with_errors, word
@@ -47,6 +47,8 @@ class Study:
 
     Attributes
     ----------
+    bodies : dict of str to body
+        The bodies of the first axis by their names, where there are several.
     base : Run
         The run at the first point.
     design : Design
@@ -73,6 +75,7 @@ class Study:
     2
     """
 
+    bodies: Mapping[str, AnyBody]
     base: Run
     design: Design
     edges: Edges | None
@@ -85,15 +88,21 @@ class Study:
     def run(self, point: int) -> Run:
         """Return the run at a point; raises a ValueError if its parameters do not go together."""
         values = self.design.values(whole("point", point, 0, self.design.points - 1))
+        base = self.base
+        if self.bodies and "body" in values:
+            base = base.model_copy(update={"body": [*self.bodies.values()][int(values.pop("body"))]})
         try:
-            return _changed(self.base, values)
+            return _changed(base, values)
         except ParameterError as error:
             here = self.where(point)
             raise ParameterError(*(Problem(f"{here}: ", str(one)) for one in error.problems)) from None
 
     def where(self, point: int) -> str:
         """Name a point by what is varied, in an error."""
-        return "at " + ", ".join(f"{key} = {value!r}" for key, value in self.design.values(point).items())
+        values: dict[str, Any] = dict(self.design.values(point))
+        if self.bodies:
+            values["body"] = [*self.bodies][int(values["body"])]
+        return "at " + ", ".join(f"{key} = {value!r}" for key, value in values.items())
 
     @cached_property
     def identity(self) -> dict[str, Any]:
@@ -102,6 +111,11 @@ class Study:
         bins = {f"{name}_bins": own.tolist() for name, own in edges.items() if own is not None}
         return {
             **tables_of(self.base),
+            **(
+                {"body": [{"name": name, **table_of(one)} for name, one in self.bodies.items()]}
+                if self.bodies
+                else {}
+            ),
             "sweep": {
                 "design": self.design.kind,
                 **{axis.parameter: list(axis.values) for axis in self.design.axes},
@@ -175,22 +189,24 @@ def _study(given: Mapping[str, Any], source: str) -> Study:
             if name not in _TABLES:
                 raise ParameterError(unknown(name, "a study", _TABLES))
         own = {name: tables.pop(name) for name in _TABLES[3:] if name in tables}
+        bodies = _bodies(tables, source)
         points = own.get("sweep", {})
         if not isinstance(points, Design):  # as a store has it
             run = tables.get("run")
-            points = design(points, run.get("seed", 1) if isinstance(run, dict) else 1)
+            points = design(points, run.get("seed", 1) if isinstance(run, dict) else 1, len(bodies))
         plain = {
             name: table_of(table) if isinstance(table, Parameters) else table
             for name, table in tables.items()
         }
         for parameter, value in points.values(0).items():
-            _set(plain, parameter, value)
+            if parameter != "body" or not bodies:
+                _set(plain, parameter, value)
     base = run_of(plain, source)
     with _naming(source):
         measure, of = _measure(own.get("measure"))
         edges = _edges(own["statistics"]) if "statistics" in own else None
         forms = forms_of(own, edges, base)
-        first = _first_impact(own, base)
+        first = _first_impact(own, base, [*bodies.values()] or [base.body])
         if measure is not None and of == "statistics" and edges is None:
             raise ParameterError(Problem("statistics", ": missing; the measure is a function of them"))
         if edges is None and measure is None and not first:
@@ -199,22 +215,42 @@ def _study(given: Mapping[str, Any], source: str) -> Study:
         amount = effort(own.get("effort", {}), base)
         if measure is None:  # else its own variables are known when it has been called
             amount.check(with_errors(edges, forms.values()))
-        found = Study(base, points, edges, forms, measure, of, first, amount)
+        found = Study(bodies, base, points, edges, forms, measure, of, first, amount)
         for point in range(points.points):
             found.run(point)
     return found
 
 
-def _first_impact(own: Mapping[str, Any], run: Run) -> bool:
+def _bodies(tables: dict[str, Any], source: str) -> dict[str, AnyBody]:
+    """Make the bodies of a list, or of a mapping with their names, and leave the first in the tables."""
+    given = tables.get("body")
+    if isinstance(given, list | tuple):
+        each = {f"body {i}": one for i, one in enumerate(given, start=1)}
+    elif isinstance(given, Mapping) and given and all(isinstance(one, AnyBody) for one in given.values()):
+        each = dict(given)
+    else:
+        return {}
+    rows = [
+        {"name": name, **table_of(one)} if isinstance(one, AnyBody) else one for name, one in each.items()
+    ]
+    found = bodies_of(rows, source)
+    if len(found) < 2:
+        raise ParameterError(wrong("body", given, "a body, or two or more"))
+    tables["body"] = next(iter(found.values()))
+    return found
+
+
+def _first_impact(own: Mapping[str, Any], run: Run, bodies: list[AnyBody]) -> bool:
     """Read ``[first_impact]``, which is an empty table."""
     if "first_impact" not in own:
         return False
     given = own["first_impact"]
     if not isinstance(given, Mapping) or len(given) > 0:
         raise ParameterError(wrong("first_impact", given, "an empty table"))
-    if isinstance(run.body, RoughSphere) and isinstance(run.body.heights, tuple):
-        allowed = "one number, for the closed form of [first_impact]"
-        raise ParameterError(wrong("body.heights", run.body.heights, allowed))
+    for body in bodies:
+        if isinstance(body, RoughSphere) and isinstance(body.heights, tuple):
+            allowed = "one number, for the closed form of [first_impact]"
+            raise ParameterError(wrong("body.heights", body.heights, allowed))
     if isinstance(run.release_height, RandomHeight) and isinstance(run.standard_law.normal, Material):
         allowed = "a number, for the closed form of [first_impact] where the coefficient varies"
         raise ParameterError(wrong("run.release_height", run.release_height, allowed))

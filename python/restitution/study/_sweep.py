@@ -50,7 +50,9 @@ def sweep(
     ----------
     study : str, Path or mapping
         A TOML file or its tables; docs/studies.md has all of them. In a mapping ``body`` and ``law`` may be a
-        body and a law, and ``measure`` a function of a Dataset.
+        body and a law, and ``measure`` a function of a Dataset. Several bodies, tables ``[[body]]`` with
+        names, in a mapping a list or ``{name: body}``, are an axis themselves: ``body``, their numbers from
+        0, whose names are in its attributes.
     out : str or Path
         The store, a directory in Zarr format 3.
     client : distributed.Client, optional

@@ -66,7 +66,7 @@ impl Rigid {
         }
         let inertia = solid(points, triangles, |volume| volume, density).map_err(|error| {
             let allowed = "counter-clockwise as seen from outside, so that they enclose a volume; \
-                           triangles[:, ::-1] turns them round";
+                           triangles[:, ::-1], or trimesh.repair.fix_inversion of a file, turns them round";
             match error {
                 Error::Parameter { name: "points", .. } => refused(allowed.to_owned()),
                 other => other,

@@ -21,6 +21,7 @@ mod superellipsoid;
 mod top;
 mod tree;
 mod truncated_cone;
+mod union;
 
 use crate::Error;
 use crate::describe::{Argument, Arguments, Kind, Parameter};

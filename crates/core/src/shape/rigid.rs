@@ -7,8 +7,9 @@ use super::tree::{BallTree, Least, NormalMotion, Point, Pruning};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Parameter};
 use crate::math::{Quaternion, Symmetric, Vector};
-use crate::memory::{collected, filled};
+use crate::memory::{empty, filled};
 use crate::simd::elementary::sincos;
+use crate::threads::go_on;
 use std::f64::consts::PI;
 
 /// Volume, or mass, with its first and second moments: the integrals of 1, **x** and **x**⊗**x**.
@@ -49,6 +50,9 @@ pub(crate) enum RigidSurface {
 
 /// Most balls, so that their numbers can be recorded.
 const MOST: usize = i32::MAX as usize;
+
+/// Parts that are made between looks whether that is still wanted.
+const OFTEN: usize = 1 << 16;
 
 /// A rigid body of any shape. Its unit of length R is the largest distance of a part of it from the centre of mass.
 #[derive(Debug, Clone, PartialEq)]
@@ -180,7 +184,13 @@ impl Rigid {
         let about_centre = balls
             .enumerate()
             .map(|(number, ball)| Point::new(ball.centre - inertia.centre, ball.radius, number));
-        let mut points = collected(what, about_centre)?;
+        let mut points = empty(what, about_centre.len())?;
+        for point in about_centre {
+            if points.len().is_multiple_of(OFTEN) {
+                go_on()?;
+            }
+            points.push(point);
+        }
         let reach = |point: &Point| point.place.norm() + point.radius;
         let unit = points.iter().map(reach).fold(0.0, f64::max);
         Self::new(inertia, unit, |axes| {

@@ -11,7 +11,8 @@ use crate::simd::elementary::{exp_in_lanes, ln, sincos};
 use crate::simd::one;
 use std::f64::consts::TAU;
 
-/// Heights of the tops of asperities above the surface, in m.
+/// Heights of the tops of asperities above the surface, in m. None that is given is above twice the radius of the asperities, which would then
+/// not touch the surface; of a distribution the mean is not, or the least.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Heights<'a> {
     /// All alike.
@@ -170,14 +171,11 @@ impl Roughness<'_> {
         let fits = self.radius > 0.0 && self.radius <= smallest;
         let allowed = "> 0, and no larger than the smallest sphere of the body (m)";
         Error::unless(fits, "asperity_radius", self.radius, allowed)?;
-        let allowed = "finite, >= 0, and no larger than the smallest sphere of the body (m)";
+        let allowed = "finite, >= 0, and no larger than the smallest sphere of the body, nor than twice asperity_radius: \
+             a higher one would float (m)";
         let within = |height: f64| {
-            Error::unless(
-                (0.0..=smallest).contains(&height),
-                "heights",
-                height,
-                allowed,
-            )
+            let stands = (0.0..=smallest.min(2.0 * self.radius)).contains(&height);
+            Error::unless(stands, "heights", height, allowed)
         };
         match self.heights {
             Heights::Equal(height) => within(height),
@@ -188,12 +186,20 @@ impl Roughness<'_> {
                 heights.iter().try_for_each(|&height| within(height))
             }
             Heights::Exponential(mean) => within(mean),
-            Heights::Normal(mean, deviation) => within(mean).and(within(deviation)),
+            Heights::Normal(mean, deviation) => {
+                within(mean)?;
+                let allowed =
+                    "finite, >= 0, and no larger than the smallest sphere of the body (m)";
+                let holds = (0.0..=smallest).contains(&deviation);
+                Error::unless(holds, "heights", deviation, allowed)
+            }
             Heights::Power(exponent, least, most) => {
                 let allowed = "with a finite exponent and 0 < least <= most (m)";
                 let holds = exponent.is_finite() && 0.0 < least && least <= most;
                 Error::unless(holds, "heights", least, allowed)?;
-                within(most)
+                let allowed = "no larger than the smallest sphere of the body (m)";
+                Error::unless(most <= smallest, "heights", most, allowed)?;
+                within(least)
             }
         }
     }

@@ -16,6 +16,7 @@ use crate::Error;
 use crate::math::Vector;
 use crate::memory::filled;
 use crate::simd::Pack;
+use crate::threads::go_on;
 #[cfg(test)]
 use evaluations::Evaluation;
 use pulp::Scalar;
@@ -310,6 +311,7 @@ impl BallTree {
         let mut quarters = filled(what, Quarters::default(), first(depth))?;
         for level in 0..depth {
             for i in 0..1 << (2 * level) {
+                go_on()?;
                 let (low, high) = range(count, level, i);
                 let ends = [1, 2, 3].map(|k| range(count, level + 1, 4 * i + k).0);
                 let [one, two, three] = ends.map(|end| end - low);

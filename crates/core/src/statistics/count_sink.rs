@@ -6,7 +6,7 @@ use super::histogram::{Bins, By, Histogram, UNSPOILT, WHAT};
 use super::moments::Sums;
 use super::narrow::Recently;
 use super::places::{all_sites, last, sites, whole};
-use super::rows::{CREATES_ENERGY, Rows};
+use super::rows::{CREATES_ENERGY, Rows, pulling};
 use crate::Error;
 use crate::drop::{PLACES, of_group};
 use crate::memory::zeros;
@@ -110,6 +110,10 @@ impl<P: Process, const EVEN: bool> Sink<P> for CountSink<'_, EVEN> {
         self.queue[lanes].copy_from_slice(site.as_slice());
         let [before, after] = event.energies();
         let gaining = active & (before * CREATES_ENERGY).lt(after);
+        let pulling = active & pulling(event.velocity(), restitution);
+        if pulling.any() {
+            pulling.each(|_| self.own.pulls += 1);
+        }
         if gaining.any() {
             let ratio = event.energy_ratio();
             gaining.each(|lane| {

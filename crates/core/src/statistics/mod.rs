@@ -18,7 +18,7 @@ pub(crate) use histogram::UNSPOILT;
 pub use histogram::{Bins, By, Grid, Histogram};
 pub(crate) use moment_sink::MomentSink;
 pub use moments::{Moments, Sums};
-pub use rows::{CREATES_ENERGY, Gains, Rows};
+pub use rows::{CREATES_ENERGY, Gains, PULLS, Rows};
 
 /// A sink that counts the impacts that it receives in the grids of a [`Histogram`], which is shared with others.
 pub(crate) trait HistogramSink<P: crate::record::Process>: crate::record::Sink<P> {

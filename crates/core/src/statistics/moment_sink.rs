@@ -9,7 +9,7 @@ use super::places::{all_sites, last, nowhere, sites, whole};
 use super::recent::{
     COARSE, Extremes, Half, LARGEST, QUANTA, Recent, fraction_quanta, quanta, words,
 };
-use super::rows::{CREATES_ENERGY, Rows};
+use super::rows::{CREATES_ENERGY, Rows, pulling};
 use crate::Error;
 use crate::drop::{PLACES, of_group};
 use crate::memory::{filled, zeros};
@@ -237,6 +237,10 @@ impl<P: Process, const EVEN: bool> Sink<P> for MomentSink<'_, EVEN> {
         };
         let [before, after] = event.energies();
         let gaining = active & (before * CREATES_ENERGY).lt(after);
+        let pulling = active & pulling(event.velocity(), restitution);
+        if pulling.any() {
+            pulling.each(|_| self.own.pulls += 1);
+        }
         let offset = restitution - self.own.origin;
         let start = row - ROUND;
         let mut site = sites(columns, start, column);

@@ -1,13 +1,28 @@
-//! Sums over the impacts of each row: moments of ε and of E_rot/E_tot, created energy; and how the particles ended.
+//! Sums over the impacts of each row: moments of ε and of E_rot/E_tot, created energy; those that pull; and how the particles ended.
 
 use super::histogram::{Bins, WHAT};
 use super::moments::{Moments, Sums};
 use super::recent::FRACTION_QUANTA;
 use crate::Error;
 use crate::memory::{copied, filled, zeros};
+use crate::simd::{Mask, Pack};
+use pulp::Simd;
 
 /// Energy ratio above which an impact counts as creating kinetic energy. Rounding errors of the ratio are a few 10⁻¹⁵.
 pub const CREATES_ENERGY: f64 = 1.0 + 1e-12;
+
+/// The share of |v_n| + |v_n′| below which v_n′ − v_n = P_n/m, v_n upwards, may be below 0 because of rounding.
+pub const PULLS: f64 = 1e-12;
+
+/// The lanes with an impact in which the plane pulls at the body: P_n < 0.
+#[inline(always)]
+pub(super) fn pulling<S: Simd, const K: usize>(
+    velocity: Pack<S, K>,
+    restitution: Pack<S, K>,
+) -> Mask<S, K> {
+    let rebound = velocity * restitution;
+    (velocity + rebound).lt((velocity.abs() + rebound.abs()) * -PULLS)
+}
 
 /// Sums of the impacts of any number of particles, by row. They merge exactly.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +37,8 @@ pub struct Rows {
     pub(super) fractions: Vec<u128>,
     /// Impacts that create energy.
     pub gains: Vec<Gains>,
+    /// Number of impacts in which the plane pulled.
+    pub pulls: u64,
     /// Number of particles by the number of their stop reason.
     pub stops: Vec<u64>,
 }
@@ -61,6 +78,7 @@ impl Rows {
             sums: filled(WHAT, Sums::EMPTY, summed)?,
             fractions: zeros(WHAT, summed)?,
             gains: filled(WHAT, Gains::default(), rows)?,
+            pulls: 0,
             stops: zeros(WHAT, reasons)?,
         })
     }
@@ -72,6 +90,7 @@ impl Rows {
             sums: copied(WHAT, &self.sums)?,
             fractions: copied(WHAT, &self.fractions)?,
             gains: copied(WHAT, &self.gains)?,
+            pulls: self.pulls,
             stops: copied(WHAT, &self.stops)?,
         })
     }
@@ -90,6 +109,7 @@ impl Rows {
         for (gains, other) in self.gains.iter_mut().zip(&other.gains) {
             gains.merge(*other);
         }
+        self.pulls += other.pulls;
         for (count, other) in self.stops.iter_mut().zip(&other.stops) {
             *count += other;
         }

@@ -6,8 +6,8 @@ use crate::Error;
 use crate::memory::empty;
 
 impl Histogram {
-    /// All numbers of the histogram, in an order that depends on the bins alone: origin, grids, sums, created energy, particles by stop
-    /// reason.
+    /// All numbers of the histogram, in an order that depends on the bins alone: origin, grids, sums, created energy, pulls, particles by
+    /// stop reason.
     ///
     /// # Errors
     /// [`Error::Memory`].
@@ -68,6 +68,7 @@ impl Histogram {
             visit(&mut gains.count);
             float(&mut gains.largest, visit);
         }
+        visit(&mut rows.pulls);
         rows.stops.iter_mut().for_each(visit);
     }
 }
