@@ -5,7 +5,6 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -137,8 +136,7 @@ def test_bodies_and_laws_of_a_file_are_compared(study: Path) -> None:
 def test_statistics_write_a_table(study: Path) -> None:
     """A row for each velocity bin, with its edges and the moments of the file, as CSV and as Parquet."""
     pandas = pytest.importorskip("pandas")
-    read_csv = partial(pandas.read_csv, float_precision="round_trip")  # as the newest versions do
-    for name, read_back in (("table.csv", read_csv), ("table.parquet", pandas.read_parquet)):
+    for name, read_back in (("table.csv", pandas.read_csv), ("table.parquet", pandas.read_parquet)):
         if name.endswith("parquet"):
             pytest.importorskip("pyarrow")
         out, table = study.with_name(f"{name}.nc"), study.with_name(name)
@@ -147,7 +145,8 @@ def test_statistics_write_a_table(study: Path) -> None:
         assert rows["velocity_from"].to_numpy() == pytest.approx([0.0, 0.1, 0.2, 0.3])
         assert rows["velocity_to"].to_numpy() == pytest.approx([0.1, 0.2, 0.3, 0.4])
         for column in ("number", "mean_restitution", "mean_restitution_error", "kurtosis", "energy_created"):
-            np.testing.assert_allclose(rows[column], found[column], rtol=1e-15)
+            # Before its version 3 pandas reads the last digit of a number as it pleases.
+            np.testing.assert_allclose(rows[column], found[column], rtol=3e-15)
     for name in ("table", "table.xlsx"):
         refused = invoke(
             "statistics", study, "-o", study.with_name("more.nc"), "--table", study.with_name(name)

@@ -308,9 +308,11 @@ def cooling(
         return [one / 1.5, turning - now * one / 1.5, contacts]
 
     start = [0.0, ratio, 0.0]
-    clock = at * rate
-    end = max(clock[-1], 1e-9)  # of a time alone that is 0
-    found = solve_ivp(change, (0.0, end), start, t_eval=clock, method="DOP853", rtol=1e-10, atol=1e-10)
+    if not at[-1] * rate > 0.0:  # a time alone that is 0, or so short that nothing has happened
+        rate = 1.0
+    found = solve_ivp(
+        change, (0.0, at[-1] * rate + 1e-9), start, t_eval=at * rate, method="DOP853", rtol=1e-10, atol=1e-10
+    )
     cooled = t * np.exp(found.y[0])
     values = (cooled, cooled * found.y[1], found.y[2])
     names = ("translational_temperature", "rotational_temperature", "contacts")
