@@ -30,12 +30,12 @@ def _closed_form() -> Section:
     """Give what the figures and claims compare with, with the numbers of docs/rough.md, which derives it."""
     formulas = (
         ("(9)", "⟨y⟩ = M(σ̃² − κ)"),
-        ("(10)", "σ_0² = Mσ̃²"),
+        ("(10)", "σ₀² = M σ̃²"),
         (
             "(11)",
-            "p(y) = exp(−y/a)/(a + b) where y > 0, exp(y/b)/(a + b) where y < 0; a − b = ⟨y⟩, ab = σ_0²/2",
+            "p(y) = exp(−y/a)/(a + b) where y > 0, exp(y/b)/(a + b) where y < 0; a − b = ⟨y⟩, ab = σ₀²/2",
         ),
-        ("(12)", "σ_ω = (1/R) {κ(1 + ε_n)γ/2 · (v_0²r^k − v²)/(r − s)}^½, k = ln(v_0²/v²)/ln(1/s)"),
+        ("(12)", "σ_ω = √[κ(1 + ε_n)γ/2 · (v₀² r^k − v²)/(r − s)] / R, k = ln(v₀²/v²)/ln(1/s)"),
     )
     listed = "".join(
         f'<dt>{label}</dt><dd class="formula">{html.prose(formula)}</dd>' for label, formula in formulas
@@ -47,13 +47,13 @@ def _closed_form() -> Section:
             html.paragraph(
                 "No parameter of it is fitted. Let y = (ε − ε_n)/(1 + ε_n); M the mean square of the angle "
                 "between the lowest point and the contact, 4/N for equal heights and 2⟨h⟩/R for exponential "
-                "ones; κ = mR²/(J + mR²); and σ̃ = σ_ωR/v, where σ_ω is the standard deviation of a "
+                "ones; κ = mR²/(J + mR²); and σ̃ = σ_ω R/v, where σ_ω is the standard deviation of a "
                 "horizontal component of the spin. Then"
             ),
             f'<dl class="pair">{listed}</dl>',
             html.paragraph(
-                "where γ = κ(1 + ε_n)M, r = 1 − 2γ and s = ε_n² − 2ε_nγ; the sphere is released without spin "
-                "and first meets the plane at v_0. The page docs/rough.md of the package derives all of it, "
+                "where γ = κ(1 + ε_n)M, r = 1 − 2γ and s = ε_n² − 2ε_n γ; the sphere is released without "
+                "spin and first meets the plane at v₀. The page docs/rough.md of the package derives this, "
                 "under the same numbers."
             ),
         ],
