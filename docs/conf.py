@@ -96,34 +96,35 @@ if site := os.environ.get("RESTITUTION_SITE"):
         "name=twitter:card": "summary_large_image",
     }
 
-# The picture on a card is a part of a figure: its file, then left, top, right and bottom as shares of it.
+# The picture on a card is a piece of a figure, so small that its letters can be read: its file, where its
+# left and its top are, and its width, as shares of those of the figure.
 CARDS = {
-    "theorist": ("first-impact.png", 0.5, 0.0, 1.0, 0.49),
-    "experimenter": ("roundness.png", 0.0, 0.0, 1.0, 1.0),
-    "dem": ("golf.png", 0.0, 0.0, 0.5, 1.0),
-    "lecturer": ("gain.gif", 0.0, 0.0, 1.0, 1.0),
-    "first-impact": ("first-impact.png", 0.0, 0.5, 0.5, 1.0),
-    "physics": ("impact.png", 0.0, 0.0, 0.5, 1.0),
-    "laws": ("laws.png", 0.265, 0.05, 0.515, 0.275),
-    "energy": ("laws.png", 0.515, 0.62, 1.0, 0.79),
-    "paper": ("fig2.png", 0.0, 0.0, 1.0, 1.0),
-    "fits": ("fits.png", 0.675, 0.0, 1.0, 0.5),
-    "theory": ("fits.png", 0.675, 0.5, 1.0, 1.0),
-    "near-round": ("near_round.png", 0.0, 0.0, 0.33, 1.0),
-    "real-collisions": ("real-collisions.png", 0.0, 0.5, 0.5, 1.0),
-    "dice": ("dice.png", 0.0, 0.0, 0.5, 1.0),
-    "rough": ("rough-bodies.png", 0.52, 0.06, 0.75, 0.5),
-    "imperfections": ("imperfections.png", 0.0, 0.0, 0.46, 0.5),
-    "homework": ("impulses.png", 0.67, 0.5, 1.0, 1.0),
-    "gas": ("cooling.png", 0.0, 0.1, 0.33, 1.0),
-    "shapes": ("shapes.png", 0.0, 0.0, 1.0, 1.0),
-    "records": ("locking.png", 0.53, 0.0, 1.0, 1.0),
-    "names": ("impact.png", 0.0, 0.0, 1.0, 1.0),
-    "studies": ("near_round_maps.png", 0.0, 0.0, 0.7, 0.55),
-    "listening": ("clock.png", 0.0, 0.0, 1.0, 1.0),
-    "roundness": ("required.png", 0.0, 0.0, 1.0, 1.0),
-    "inference": ("calibration.png", 0.0, 0.0, 1.0, 0.4),
-    "lab-sheet": ("lab-sheet.png", 0.0, 0.0, 1.0, 1.0),
+    "theorist": ("first-impact.png", 0.5, 0.16, 0.5),
+    "experimenter": ("roundness.png", 0.0, 0.3, 0.6),
+    "dem": ("golf.png", 0.02, 0.0, 0.44),
+    "lecturer": ("impulses.png", 0.335, 0.12, 0.33),
+    "first-impact": ("first-impact.png", 0.02, 0.52, 0.46),
+    "physics": ("impact.png", 0.03, 0.22, 0.44),
+    "laws": ("laws.png", 0.27, 0.06, 0.45),
+    "energy": ("laws.png", 0.02, 0.77, 0.48),
+    "paper": ("fig2.png", 0.0, 0.2, 0.8),
+    "fits": ("fits.png", 0.66, 0.0, 0.34),
+    "theory": ("fits.png", 0.66, 0.5, 0.34),
+    "near-round": ("near_round.png", 0.01, 0.1, 0.36),
+    "real-collisions": ("real-collisions.png", 0.02, 0.52, 0.46),
+    "dice": ("dice.png", 0.02, 0.05, 0.46),
+    "rough": ("rough-bodies.png", 0.52, 0.08, 0.24),
+    "imperfections": ("imperfections.png", 0.08, 0.02, 0.4),
+    "homework": ("impulses.png", 0.67, 0.62, 0.33),
+    "gas": ("cooling.png", 0.0, 0.2, 0.34),
+    "shapes": ("shapes.png", 0.0, 0.02, 0.66),
+    "records": ("locking.png", 0.54, 0.0, 0.46),
+    "names": ("impact.png", 0.53, 0.22, 0.44),
+    "studies": ("near_round_maps.png", 0.02, 0.04, 0.4),
+    "listening": ("clock.png", 0.05, 0.3, 0.5),
+    "roundness": ("required.png", 0.0, 0.4, 0.6),
+    "inference": ("calibration.png", 0.0, 0.0, 0.36),
+    "lab-sheet": ("lab-sheet.png", 0.0, 0.1, 0.5),
 }
 
 
@@ -131,12 +132,11 @@ def _cards() -> None:
     """Cut the pictures of the cards out of the figures, and out of those for the dark."""
     folder = BUILT.parent / "cards"
     folder.mkdir(exist_ok=True)
-    for name, (figure, *box) in CARDS.items():
+    for name, (figure, left, top, width) in CARDS.items():
         for path in {HERE / "images" / figure, _dark(HERE / "images" / figure)}:
             with Image.open(path) as whole:
-                width, height = whole.size
-                left, top, right, bottom = box
-                part = whole.crop((left * width, top * height, right * width, bottom * height)).convert("RGB")
+                x, y, wide = left * whole.width, top * whole.height, width * whole.width
+                part = whole.crop((x, y, x + wide, y + wide / 1.9)).convert("RGB")
             part.thumbnail((640, 640))
             part.save(folder / f"{name}{'-dark' * path.stem.endswith('-dark')}.png")
 
