@@ -97,15 +97,15 @@ pub fn encounter(
     law: &Law<'_>,
     states: [PairState; 2],
     chance: impl Fn(u64) -> f64,
-    hit: impl FnMut(&Hit),
+    mut hit: impl FnMut(&Hit),
 ) -> Result<Outcome, Trouble> {
     let mut between = vec![Between::default(); bodies[0].pieces.len() * bodies[1].pieces.len()];
     Level::best().run(Following {
         bodies,
         law,
         states,
-        chance,
-        hit,
+        chance: &chance,
+        hit: &mut hit,
         between: &mut between,
     })
 }
@@ -121,18 +121,18 @@ pub fn narrowest(bodies: [&Partner; 2], states: &[PairState; 2]) -> f64 {
     search.narrowest(&mut flight(bodies, apart, Vector::default(), &turning))
 }
 
-/// An encounter, compiled for each SIMD level.
-pub(super) struct Following<'a, 'b, C, H> {
+/// An encounter, compiled once for each SIMD level: whoever follows one runs it at a level.
+pub(super) struct Following<'a, 'b> {
     pub bodies: [&'a Partner; 2],
     pub law: &'a Law<'b>,
     pub states: [PairState; 2],
-    pub chance: C,
-    pub hit: H,
+    pub chance: &'a dyn Fn(u64) -> f64,
+    pub hit: &'a mut dyn FnMut(&Hit),
     /// Room for what is known of each two parts.
     pub between: &'a mut [Between],
 }
 
-impl<C: Fn(u64) -> f64, H: FnMut(&Hit)> WithSimd for Following<'_, '_, C, H> {
+impl WithSimd for Following<'_, '_> {
     type Output = Result<Outcome, Trouble>;
 
     #[inline(always)]
@@ -157,9 +157,9 @@ impl Turning {
     }
 }
 
-impl<C: Fn(u64) -> f64, H: FnMut(&Hit)> Following<'_, '_, C, H> {
+impl Following<'_, '_> {
     #[inline(always)]
-    pub fn follow(mut self) -> Result<Outcome, Trouble> {
+    fn follow(mut self) -> Result<Outcome, Trouble> {
         let bodies = self.bodies;
         let reach = bodies[0].reach + bodies[1].reach;
         let search = PairSearch {

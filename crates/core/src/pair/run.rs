@@ -7,9 +7,9 @@ use crate::contact::Between;
 use crate::law::Law;
 use crate::math::Vector;
 use crate::random::of_impact;
+use crate::simd::Level;
 use crate::simd::elementary::angle;
 use crate::threads::{Monitor, Resources};
-use pulp::{Simd, WithSimd};
 use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -287,15 +287,14 @@ impl Encounters<'_> {
                 }
                 let rows = number * BLOCK..self.count.min((number + 1) * BLOCK);
                 let size = rows.len() as u64;
-                let sum = resources.level.run(Block {
+                let block = Block {
                     encounters: self,
                     law,
                     given,
                     rows,
                     between: &mut between,
-                    sum: T::default(),
-                    add: &add,
-                })?;
+                };
+                let sum = block.sum(resources.level, &add)?;
                 done.lock()
                     .expect("nobody panics who holds it")
                     .push((number, sum));
@@ -386,29 +385,28 @@ impl Encounters<'_> {
     }
 }
 
-/// Some encounters, compiled for each SIMD level.
-struct Block<'a, 'b, T, A> {
+/// Some encounters.
+struct Block<'a, 'b> {
     encounters: &'a Encounters<'a>,
     law: &'a Law<'b>,
     given: Option<&'a [[PairState; 2]]>,
     rows: Range<usize>,
     between: &'a mut [Between],
-    sum: T,
-    add: &'a A,
 }
 
-impl<T, A: Fn(&Encountered, &[Hit], &mut T)> WithSimd for Block<'_, '_, T, A> {
-    type Output = Result<T, Error>;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(mut self, _: S) -> Self::Output {
+impl Block<'_, '_> {
+    fn sum<T: Default>(
+        self,
+        level: Level,
+        add: impl Fn(&Encountered, &[Hit], &mut T),
+    ) -> Result<T, Error> {
         let Encounters {
             bodies,
             first,
             seed,
             ..
         } = *self.encounters;
-        let mut hits = Vec::new();
+        let (mut sum, mut hits) = (T::default(), Vec::new());
         for row in self.rows {
             let number = first + row as u64;
             let before = match self.given {
@@ -420,15 +418,14 @@ impl<T, A: Fn(&Encountered, &[Hit], &mut T)> WithSimd for Block<'_, '_, T, A> {
             }
             hits.clear();
             self.between.fill(Between::default());
-            let following = Following {
+            let outcome = level.run(Following {
                 bodies,
                 law: self.law,
                 states: before,
-                chance: |contact| of_impact(seed, number, contact),
-                hit: |hit: &Hit| hits.push(*hit),
+                chance: &|contact| of_impact(seed, number, contact),
+                hit: &mut |hit: &Hit| hits.push(*hit),
                 between: &mut *self.between,
-            };
-            let outcome = following.follow();
+            });
             let outcome =
                 outcome.map_err(|trouble| failed(self.law, trouble, (seed, number), hits.len()))?;
             let found = Encountered {
@@ -436,9 +433,9 @@ impl<T, A: Fn(&Encountered, &[Hit], &mut T)> WithSimd for Block<'_, '_, T, A> {
                 outcome,
                 first: hits.first().copied(),
             };
-            (self.add)(&found, &hits, &mut self.sum);
+            add(&found, &hits, &mut sum);
         }
-        Ok(self.sum)
+        Ok(sum)
     }
 }
 
