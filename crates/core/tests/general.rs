@@ -277,12 +277,11 @@ fn coulomb_is_the_reference_with_thirty_digits() {
     distances.below(0.5, 20.0);
 }
 
-/// In the frame of a body of revolution, z along the normal and x along the horizontal direction of its axis, it is the law in lanes. Only a
-/// contact that is pressed together again is another: there the lanes count from the end of the last compression alone.
+/// In the frame of a body of revolution, z along the normal and x along the horizontal direction of its axis, it is the law in lanes.
 #[test]
 fn axial_compliances_have_the_law_of_bodies_of_revolution() {
     let mut random = contacts::Random::new(3);
-    let (mut worst, mut again): (f64, usize) = (0.0, 0);
+    let mut worst: f64 = 0.0;
     for _ in 0..20_000 {
         let axial = random.spatial();
         let (n, u, j) = (
@@ -323,25 +322,14 @@ fn axial_compliances_have_the_law_of_bodies_of_revolution() {
             let p = expected.impulse;
             let off = norm(minus(array(found.impulse), [p.along, p.across, p.normal]));
             let allowed = contacts::rounding(&axial, &expected);
-            if off <= 64.0 * allowed {
-                worst = worst.max(off / allowed);
-                continue;
-            }
-            let Rule::Coulomb { .. } = rule else {
-                panic!("{rule:?} {axial:?} {found:?} {expected:?}")
-            };
-            let jams = friction * (n * u / j).abs() > contact.response[2][2];
-            let right = contact.answer(&rule, restitution).impulse;
-            let off = norm(minus(array(found.impulse), right));
+            worst = worst.max(off / allowed);
             assert!(
-                jams && off <= 64.0 * allowed,
+                off <= 64.0 * allowed,
                 "{rule:?} {axial:?} {found:?} {expected:?}"
             );
-            again += 1;
         }
     }
-    println!("worst {worst:.1} of rounding, {again} pressed together again");
-    assert!(again < 30);
+    println!("worst {worst:.1} of rounding");
 }
 
 /// Impulse along the plane and the normal in the plane of both, where everything is a straight line in p until the slip stops and after.

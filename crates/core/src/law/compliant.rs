@@ -1,12 +1,11 @@
 //! Operations of the laws on the matrix K (10), so that each formula stands once, for every K.
 
 use super::Components;
-use super::coulomb::Sliding;
 use crate::simd::Pack;
 use pulp::Simd;
 
 /// The matrix K of the contact in each lane: that of a body of revolution, or of any body.
-pub(super) trait Compliant<S: Simd>: Sliding<S> {
+pub(super) trait Compliant<S: Simd> {
     /// K_nn.
     fn nn(&self) -> Pack<S, 1>;
 

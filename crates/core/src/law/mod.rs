@@ -31,6 +31,7 @@ pub(crate) use rule::{MOST_CONTACTS, Respond};
 pub use tangential::TangentialRestitution;
 
 use crate::simd::Pack;
+use coulomb::Sliding;
 use pulp::Simd;
 
 rule::laws! {

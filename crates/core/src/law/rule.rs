@@ -77,7 +77,7 @@ macro_rules! laws {
             #[inline(always)]
             fn respond<S: Simd, const SPACE: bool>(
                 &self,
-                contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
+                contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
                 normal: Pack<S, 1>,
             ) -> Response<Pack<S, 1>> {
                 match self {

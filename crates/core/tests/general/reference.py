@@ -57,6 +57,7 @@ def impulse(k, velocity, mu, e, hypothesis):
     approach = -v
     p, px, py, work = (mp.mpf(0) for _ in range(4))
     compressions, compressing, began, owed = 1, True, p, mp.mpf(0)
+    balance, taken = mp.mpf(0), mp.mpf(0)  # work before this phase, and the most that was taken
     wanted = e * approach if hypothesis == "newton" else mp.mpf(0)
     while True:
         rho = mp.hypot(x, y)
@@ -142,12 +143,14 @@ def impulse(k, velocity, mu, e, hypothesis):
         if end is not None:
             if not compressing or hypothesis == "newton":
                 return (px, py, p), compressions
-            owed += e * (p - began) if hypothesis == "poisson" else -e * e * work
-            if owed == 0:
+            balance += work
+            taken = max(taken, -balance)
+            owed = e * p if hypothesis == "poisson" else e * e * taken - (taken + balance)
+            if owed <= 0:
                 return (px, py, p), compressions
             compressing, began, work, v = False, p, mp.mpf(0), mp.mpf(0)
         elif again is not None:
-            owed -= p - began if hypothesis == "poisson" else work
+            balance += work
             compressing, began, work, v = True, p, mp.mpf(0), mp.mpf(0)
             compressions += 1
 

@@ -361,29 +361,27 @@ pub fn follow(
         }
         panic!("the impact did not end: {contact:?}, {friction}");
     };
-    // Impulse and work of all compressions, and of all restitutions before the last.
-    let (mut pressed, mut taken, mut pushed, mut given) = (0.0, 0.0, 0.0, 0.0);
+    // Work so far, and the most that was taken.
+    let (mut balance, mut taken): (f64, f64) = (0.0, 0.0);
     loop {
-        let start = p;
         run(&mut p, &mut path, End::Compressed);
-        pressed += p - start;
-        taken -= path[WORK];
+        balance += path[WORK];
+        taken = taken.max(-balance);
         path[NORMAL_VELOCITY] = 0.0;
         path[WORK] = 0.0;
-        if restitution == 0.0 {
+        let due = restitution * restitution * taken - (taken + balance);
+        if restitution == 0.0 || hypothesis == Hypothesis::Stronge && due <= 0.0 {
             return answer(p, &path, 0.0);
         }
-        let start = p;
         let end = match hypothesis {
             Hypothesis::Newton => End::Speed(restitution * approach),
-            Hypothesis::Poisson => End::Impulse(p + (restitution * pressed - pushed)),
-            Hypothesis::Stronge => End::Work(restitution * restitution * taken - given),
+            Hypothesis::Poisson => End::Impulse(p + restitution * p),
+            Hypothesis::Stronge => End::Work(due),
         };
         if !run(&mut p, &mut path, end) {
             return answer(p, &path, path[NORMAL_VELOCITY]);
         }
-        pushed += p - start;
-        given += path[WORK];
+        balance += path[WORK];
         path[NORMAL_VELOCITY] = 0.0;
         path[WORK] = 0.0;
     }

@@ -11,7 +11,7 @@ mod planar;
 mod slipping;
 mod turning;
 
-use super::{Compliant, Components, Contact, Creation, LawKind, Response, Slip};
+use super::{Components, Contact, Creation, LawKind, Response, Slip};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::simd::Pack;
@@ -124,7 +124,7 @@ impl Coulomb {
     #[inline(always)]
     pub(super) fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
+        contact: &Contact<Pack<S, 1>, impl Sliding<S>>,
         restitution: Pack<S, 1>,
     ) -> Response<Pack<S, 1>> {
         contact

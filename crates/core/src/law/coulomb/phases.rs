@@ -1,8 +1,8 @@
 //! The phases of an impact with Coulomb friction, whatever its slip does: compression, restitution, and in a jam once more of either.
 //!
-//! A contact that approaches again before its restitution is over is compressed again. The restitution then still owes the fraction of
-//! what all compressions have taken, ε_n of the impulse or ε_n² of the work, less what it has given back. Newton's hypothesis knows no
-//! compression: the impact is over where v_n is first ε_n times the speed of approach.
+//! A contact that approaches again before its restitution is over is compressed again. The restitution ends where the normal force has
+//! returned ε_n² of the most work that it had taken so far, or where p is 1 + ε_n times that at the end of the last compression. Newton's
+//! hypothesis knows no compression: the impact is over where v_n is first ε_n times the speed of approach.
 
 use super::Hypothesis;
 
@@ -19,10 +19,13 @@ pub(super) struct ImpactSoFar {
     pub friction: [f64; 2],
     /// True if the contact is being compressed, or has Newton's hypothesis to fulfil.
     pub compressing: bool,
-    /// p at the beginning of this compression or restitution, and ∫v_n dp since.
+    /// p at the beginning of this compression or restitution, and the work ∫v_n dp until then and since.
     began: f64,
+    balance: f64,
     work: f64,
-    /// The part of the restitution that is still to come: impulse under Poisson's, work under Stronge's hypothesis.
+    /// The most work that the contact has taken so far.
+    taken: f64,
+    /// What this restitution has to give: impulse under Poisson's, work under Stronge's hypothesis.
     owed: f64,
 }
 
@@ -46,7 +49,9 @@ impl ImpactSoFar {
             friction: [0.0; 2],
             compressing: true,
             began: 0.0,
+            balance: 0.0,
             work: 0.0,
+            taken: 0.0,
             owed: 0.0,
         }
     }
@@ -116,19 +121,19 @@ impl ImpactSoFar {
         if self.hypothesis == Hypothesis::Newton {
             return true;
         }
-        let e = self.restitution;
-        self.owed += match self.hypothesis {
-            Hypothesis::Stronge => e * e * -self.work,
-            _ => e * (self.normal - self.began),
-        };
         self.turn_over();
+        let e = self.restitution;
+        self.taken = self.taken.max(-self.balance);
+        self.owed = match self.hypothesis {
+            Hypothesis::Stronge => e * e * self.taken - (self.taken + self.balance),
+            _ => e * self.normal,
+        };
         self.owed <= 0.0
     }
 
     /// The contact approaches again before the restitution is over; never the end of the impact.
     pub fn pressed_again(&mut self) -> bool {
         self.speed = 0.0;
-        self.owed = self.missing();
         self.turn_over();
         false
     }
@@ -136,6 +141,7 @@ impl ImpactSoFar {
     fn turn_over(&mut self) {
         self.compressing = !self.compressing;
         self.began = self.normal;
+        self.balance += self.work;
         self.work = 0.0;
     }
 
