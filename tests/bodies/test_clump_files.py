@@ -89,6 +89,7 @@ def test_the_same_spheres_in_every_format(tmp_path: Path, text: str, format: str
     assert body.mass == expected.mass
 
 
+@pytest.mark.filterwarnings("ignore:.*lengths are in m")
 def test_what_is_written_is_read_again_bit_by_bit(tmp_path: Path) -> None:
     spheres = np.random.default_rng(5).normal(size=(7, 4)) * (1e-3, 1e-4, 1.0, 0.0) + (0, 0, 0, 1 / 3)
     body, path = rs.Clump(spheres=spheres), tmp_path / "clump.csv"
@@ -166,6 +167,14 @@ def test_rows_of_points_and_profiles(tmp_path: Path) -> None:
     rows.write_text("0 1\n1 -1\n", encoding="utf-8")
     with pytest.raises(ValueError, match=r"rows\.csv: profile\[1, 1\] = -1"):
         rs.Revolution.from_file(rows)
+    rows.write_text("0 4\n12 0\n", encoding="utf-8")
+    with pytest.warns(
+        UserWarning, match=r"rows\.csv: lengths are in m, and the body is 12 m in size; scale=1e-3?"
+    ):
+        rs.Revolution.from_file(rows)
+    rows.write_text("0 0 0 2\n1 0 0 2\n", encoding="utf-8")
+    with pytest.warns(UserWarning, match="lengths are in m, and the body is 2 m in size"):
+        rs.Clump.from_file(rows)
     corners = [(0, 0, 0), (6, 0, 0), (0, 6, 0), (0, 0, 6)]
     rows.write_text("\n".join(" ".join(map(str, corner)) for corner in corners), encoding="utf-8")
     run.write_text(f'{head}shape = "convex-polyhedron"\n', encoding="utf-8")

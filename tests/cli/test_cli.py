@@ -206,3 +206,19 @@ def test_papers_hand_over_their_options(
     assert given == [tmp_path, 500_000, 7, 2, False, False]
     result = invoke(command, "--out", tmp_path, "--impacts", 3)
     assert (result.exit_code, result.stderr) == (BAD_INPUT, "error: impacts = 3: must be at least 400000\n")
+
+
+def test_the_summary_says_where_the_plane_pulled(tmp_path: Path) -> None:
+    path = tmp_path / "run.toml"
+    path.write_text(
+        '[body]\nshape = "dumbbell"\nradius = 3e-3\nseparation = 6e-3\n'
+        '[law]\ntype = "tangential-restitution"\nnormal = 0.5\ntangential = -0.5\n'
+        "[run]\nparticles = 500\nimpacts = 50\nspin = [0.0, 30.0, 0.0]\n",
+        encoding="utf-8",
+    )
+    result = invoke("simulate", path, "--out", tmp_path / "run.nc")
+    pulls = load(tmp_path / "run.nc").attrs["pulling_impacts"]
+    assert (
+        result.stdout.splitlines()[-1].replace("impact ", "impacts ")
+        == f"{pulls} impacts let the plane pull."
+    )

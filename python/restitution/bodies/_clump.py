@@ -18,6 +18,7 @@ from restitution.bodies._rigid import (
     Density,
     RigidBody,
     Rows,
+    ask_of_scale,
     rows,
     scale_of,
     tensor_of,
@@ -121,11 +122,13 @@ class Clump(RigidBody):
             If the file cannot be read.
         """
         unit = scale_of(scale)
-        spheres = np.array(_clump_files.read(files.path_from("path", path), format))
+        place = files.path_from("path", path)
+        spheres = np.array(_clump_files.read(place, format))
         with np.errstate(over="ignore"):
             scaled = unit * spheres
         if not _within(scaled).all():
             raise ParameterError(wrong("scale", scale, f"such that the spheres are {_SPHERES}"))
+        ask_of_scale(place, unit, spheres)
         return cls(spheres=scaled, density=density, inertia=inertia, centre=centre)
 
     def to_csv(self, path: str | os.PathLike[str], *, replace: bool = False) -> None:

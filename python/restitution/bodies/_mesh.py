@@ -1,7 +1,6 @@
 """Solids within closed surfaces of triangles, as scanners and design programs write them."""
 
 import os
-import warnings
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -13,7 +12,7 @@ from restitution import _core
 from restitution._internal import files
 from restitution._internal.arrays import FloatArray, IntArray, reals
 from restitution._internal.parameters import Allowed, ParameterError, Problem, renamed, wrong
-from restitution.bodies._rigid import LARGEST, SMALLEST, Density, Matter, rows, scale_of
+from restitution.bodies._rigid import LARGEST, SMALLEST, Density, Matter, ask_of_scale, rows, scale_of
 
 _VERTICES = "four or more points (x, y, z) in m, finite, not all in one plane"
 _TRIANGLES = "triples of numbers of the vertices, from 0"
@@ -99,9 +98,7 @@ class Mesh(Matter):
         if not SMALLEST <= unit * size <= LARGEST:
             allowed = f"such that the mesh is {SMALLEST:g} to {LARGEST:g} m in size"
             raise ParameterError(wrong("scale", scale, allowed))
-        if unit == 1.0 and size > 1.0:
-            text = f"{place}: lengths are in m, and the mesh is {size:g} m in size; scale=1e-3?"
-            warnings.warn(text, UserWarning, stacklevel=2)
+        ask_of_scale(place, unit, vertices)
         with renamed(lambda name: f"{place}: {name}" if name in ("vertices", "triangles") else name):
             return cls(
                 vertices=unit * vertices,

@@ -1,8 +1,10 @@
 """The base of the rigid bodies of any shape."""
 
 import os
+import warnings
 from collections.abc import Callable, Iterator
 from functools import cached_property
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
@@ -57,6 +59,14 @@ def directions(number: int) -> FloatArray:
 def scale_of(scale: Any) -> float:
     """Take what a unit of a file is in m."""
     return real("scale", scale, "a finite number > 0 (m)", lambda x: 0.0 < x < np.inf)
+
+
+def ask_of_scale(place: Path, scale: float, table: FloatArray) -> None:
+    """Warn of a file whose lengths are rather in mm."""
+    size = float(np.abs(table).max())
+    if scale == 1.0 and size > 1.0:
+        text = f"{place}: lengths are in m, and the body is {size:g} m in size; scale=1e-3?"
+        warnings.warn(text, UserWarning, stacklevel=3)
 
 
 def rows(
@@ -212,6 +222,7 @@ class FromRows(Matter):
         """
         unit, place = scale_of(scale), files.path_from("path", path)
         table = unit * np.array(rows_in(place, cls.columns))
+        ask_of_scale(place, unit, table)
         own = cls.by_place[0]
         with renamed(lambda name: f"{place}: {name}" if name.startswith(own) else name):
             return cls(**{own: table}, density=density, inertia=inertia, centre=centre)

@@ -367,3 +367,5 @@ def _energy(attrs: dict[str, Any]) -> Iterator[str]:
     if gains:
         largest = attrs["largest_energy_ratio"]
         yield f"{_number(gains, 'impact')} created kinetic energy, by a factor of {factor(largest)} at most."
+    if pulls := attrs.get("pulling_impacts"):
+        yield f"{_number(pulls, 'impact')} let the plane pull."
