@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import restitution as rs
 from reference.bouncing import impact_times
@@ -174,3 +175,35 @@ def test_a_law_that_nothing_tells_has_infinite_errors() -> None:
     fit = rs.flight.fit(data, "plastic")
     assert fit.p_value < 1e-6
     assert fit.errors["yield_speed"] > 0.0
+
+
+def several(coefficients: np.ndarray, scatter: float, error: float, seed: int) -> list[xr.Dataset]:
+    """Drops of round balls with these mean coefficients, 12 impacts each."""
+    rng = np.random.default_rng(seed)
+    found = []
+    for mean in coefficients:
+        speeds = 1.5 * np.cumprod(mean + scatter * rng.standard_normal(11))
+        times = np.concatenate([[0.0], np.cumsum(2.0 * speeds / 9.81)])
+        found.append(rs.flight.restitution(times + rng.normal(0.0, error, 12), error))
+    return found
+
+
+def test_series_have_a_scatter_between_them() -> None:
+    """Plates that differ by 0.002 around 0.92: the error of the mean is theirs, 0.002/√8, not that of one."""
+    plates = 0.92 + 0.002 * np.array([-1.3, -0.9, -0.5, -0.1, 0.1, 0.5, 0.9, 1.3])
+    found = rs.flight.fit(several(plates, 5e-4, 2e-5, 1), "constant", scatter="fit")
+    assert found.between == pytest.approx(np.std(plates, ddof=1), rel=0.35)
+    assert found.errors["restitution"] == pytest.approx(np.std(plates, ddof=1) / np.sqrt(8.0), rel=0.35)
+    assert abs(found.parameters["restitution"] - 0.92) < 2e-4
+    assert "between series 0.00" in str(found)
+    alike = rs.flight.fit(several(np.full(8, 0.92), 5e-4, 2e-5, 2), "constant", scatter="fit")
+    assert alike.between < 4e-4
+    assert alike.errors["restitution"] < 0.4 * found.errors["restitution"]
+
+
+def test_a_scatter_of_zero_is_not_certain() -> None:
+    """Video with 240 frames/s: errors of the times hide a scatter of some 0.003, which the law may have."""
+    [one] = several(np.array([0.92]), 0.0, 1.2e-3, 3)
+    certain, averaged = (rs.flight.fit(one, "constant", scatter=each) for each in (0.0, "fit"))
+    assert averaged.scatter < 1e-3 < averaged.scatter_error < 0.02
+    assert averaged.errors["restitution"] > 1.5 * certain.errors["restitution"]

@@ -39,9 +39,10 @@ def fit(
         spheres with their yield speed.
     scatter : float or "fit"
         Standard deviation of ε about the law besides the errors of measurement, >= 0, as an imperfect shape
-        makes it; or fitted with the law, by the restricted likelihood. If the times came without an
-        uncertainty it is fitted, too, where the coefficients tell one from the other; the fit's ``note``
-        says what they tell.
+        makes it; or fitted with the law, by the restricted likelihood, together with one between several
+        series, as of other drops or plates; errors are averaged over all scatters that are not excluded. If
+        the times came without an uncertainty it is fitted, too, where the coefficients tell one from the
+        other; the fit's ``note`` says what they tell.
 
     Returns
     -------

@@ -34,6 +34,8 @@ class LawFit(Content):
     scatter, scatter_error : float
         Standard deviation of ε about the law that no error of measurement explains, and its standard error;
         as it was given, with error 0, unless it was fitted.
+    between, between_error : float
+        Standard deviation of ε between series, of drops or plates, and its standard error; 0 for one series.
     impacts : int
         Number of coefficients that were fitted.
     chi2 : float
@@ -67,6 +69,8 @@ class LawFit(Content):
     loglikelihood: float
     _form: LawOfSpeed = field(repr=False)
     note: str = ""
+    between: float = 0.0
+    between_error: float = 0.0
 
     @property
     def p_value(self) -> float:
@@ -76,7 +80,7 @@ class LawFit(Content):
     @property
     def aic(self) -> float:
         """Akaike's criterion 2 k - 2 ln L; lower is better."""
-        free = len(self.parameters) + (self.scatter_error > 0.0)
+        free = len(self.parameters) + (self.scatter_error > 0.0) + (self.between_error > 0.0)
         return 2.0 * free - 2.0 * self.loglikelihood
 
     def __call__(self, speed: npt.ArrayLike) -> Array:
@@ -114,6 +118,8 @@ class LawFit(Content):
         parts = list(map(" = ".join, self.estimates()))
         if self.scatter_error > 0.0:
             parts.append(f"scatter {with_error(self.scatter, self.scatter_error)}")
+        if self.between_error > 0.0:
+            parts.append(f"between series {with_error(self.between, self.between_error)}")
         freedom = self.degrees_of_freedom
         quality = f"χ²/n = {self.chi2:.1f}/{freedom}"
         if not self.scatter_error > 0.0:

@@ -1,8 +1,9 @@
 """Least squares and likelihood of a law ε_n(v), with the covariance of the measurement."""
 
+from collections.abc import Callable
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -64,6 +65,40 @@ def _spread(logarithm: float) -> float:
 
 
 _IMPOSSIBLE = 1e300
+_DECIDED = 2.71
+"""Twice the logarithm of a ratio of likelihoods that a variance of zero exceeds in 5 of 100 cases."""
+_USUAL_BETWEEN = 3e-3
+"""Half of all plates and hands differ by less in ε: the scale of a half-Cauchy prior (Gelman, 2006)."""
+_AVERAGED = 8.0
+"""Drop of the logarithm of the likelihood down to which scatters are averaged over."""
+_STEPS = np.linspace(0.0, 1.0, 13)
+
+
+class Scatter(NamedTuple):
+    """Standard deviations of ε that no error of measurement explains: of each impact, and of each series."""
+
+    one: float
+    between: float = 0.0
+
+
+NONE = Scatter(0.0)
+
+
+class Restricted(NamedTuple):
+    """A restricted likelihood, by its logarithm; the step to the best parameters; the information on them."""
+
+    value: float
+    move: Array
+    information: Array
+
+
+def _finite(value: Callable[[], float]) -> float:
+    """Return a value, and a large one where there is none."""
+    try:
+        found = value()
+    except (np.linalg.LinAlgError, ValueError):
+        return _IMPOSSIBLE
+    return found if np.isfinite(found) else _IMPOSSIBLE
 
 
 class Misfit:
@@ -75,6 +110,9 @@ class Misfit:
 
     def __init__(self, form: LawOfSpeed, experiments: list[Measured], known: npt.NDArray[np.bool_]) -> None:
         self.form, self.experiments, self.known = form, experiments, known
+        number = np.repeat(np.arange(len(experiments)), [one.times.size for one in experiments])[known]
+        self.series = np.unique(number).size
+        self.together = number[:, None] == number
         self.expand(None)
 
     def expand(self, shift: Array | None) -> None:
@@ -107,15 +145,16 @@ class Misfit:
         there = self.after - self.form.coefficient(self.before, values) * self.before
         return np.asarray(there - self.jacobian(values) @ self.shift)
 
-    def covariance(self, values: Array, scatter: float) -> Array:
+    def covariance(self, values: Array, scatter: Scatter) -> Array:
         """Return the covariance of the residuals, shape (n, n)."""
         return self._covariance(tuple(values), scatter)
 
-    def _covariance_at(self, values: tuple[float, ...], scatter: float) -> Array:
+    def _covariance_at(self, values: tuple[float, ...], scatter: Scatter) -> Array:
         by = self._jacobian(values)
-        return np.asarray((by * self.variances) @ by.T + np.diag((scatter * self.before) ** 2))
+        own = np.diag(np.full(self.before.size, scatter.one**2)) + scatter.between**2 * self.together
+        return np.asarray((by * self.variances) @ by.T + own * np.outer(self.before, self.before))
 
-    def improve(self, values: Array, scatter: float) -> bool:
+    def improve(self, values: Array, scatter: Scatter) -> bool:
         """Expand about the most probable true values; return whether they changed much."""
         by = self.jacobian(values)
         pull = np.linalg.solve(self.covariance(values, scatter), self.residual(values))
@@ -124,25 +163,25 @@ class Misfit:
         self.expand(shift)
         return bool(np.any(moved))
 
-    def whitened(self, values: Array, scatter: float) -> Array:
+    def whitened(self, values: Array, scatter: Scatter) -> Array:
         lower = np.linalg.cholesky(self.covariance(values, scatter))
         return np.asarray(solve_triangular(lower, self.residual(values), lower=True))
 
-    def loglikelihood(self, values: Array, scatter: float) -> float:
+    def loglikelihood(self, values: Array, scatter: Scatter) -> float:
         """Of the times; where they alone err, the determinant belongs to the times that are eliminated."""
         misfit = float(np.sum(self.whitened(values, scatter) ** 2))
-        if scatter == 0.0:
+        if scatter == NONE:
             return -0.5 * misfit
         _, logarithm = np.linalg.slogdet(self.covariance(values, scatter))
         return -0.5 * (misfit + float(logarithm))
 
-    def information(self, values: Array, scatter: float) -> Array:
+    def information(self, values: Array, scatter: Scatter) -> Array:
         """Return the information on the parameters, the inverse of their covariance."""
         factor = cho_factor(self.covariance(values, scatter), lower=True)
         slopes = self.before[:, None] * by_parameters(self.form, self.before, values)
         return np.asarray(slopes.T @ cho_solve(factor, slopes))
 
-    def least_squares(self, start: Array, scatter: float) -> Array:
+    def least_squares(self, start: Array, scatter: Scatter) -> Array:
         scale = np.maximum(np.abs(start), 1e-3)
 
         def misfit(values: Array) -> Array:
@@ -154,11 +193,10 @@ class Misfit:
 
     def fit(self, scatter: float | Literal["fit"]) -> LawFit:
         values = self.form.start(self.before, self.after / self.before)
-        spread, spread_error = 0.0 if scatter == "fit" else float(scatter), 0.0
+        spread = NONE if scatter == "fit" else Scatter(float(scatter))
         for _ in range(_MOST_EXPANSIONS):
             if scatter == "fit":
                 values, spread = self._with_scatter(values)
-                spread_error = self._scatter_error(values, spread)
             else:
                 values = self.least_squares(values, spread)
             # A law that is far from the data would move the times out of their order; it is refuted anyway.
@@ -169,6 +207,11 @@ class Misfit:
         # Where no data depend on a parameter, as on a yield speed above all speeds, its error is infinite.
         told = np.linalg.matrix_rank(information) == len(information)
         covariance = np.asarray(np.linalg.inv(information) if told else np.full(information.shape, np.inf))
+        spread_error = NONE
+        if scatter == "fit":
+            spread_error = Scatter(self._scatter_error(values, spread))
+            if told:
+                covariance, spread_error = self._averaged(values, spread, spread_error, covariance)
         residual = self.residual(values)
         names = self.form.parameters
         return LawFit(
@@ -177,8 +220,10 @@ class Misfit:
             errors=MappingProxyType(dict(zip(names, np.sqrt(np.diag(covariance)).tolist(), strict=True))),
             units=MappingProxyType(dict(zip(names, self.form.units, strict=True))),
             covariance=covariance,
-            scatter=spread,
-            scatter_error=spread_error,
+            scatter=spread.one,
+            scatter_error=spread_error.one,
+            between=spread.between,
+            between_error=spread_error.between,
             impacts=residual.size,
             chi2=float(np.sum(self.whitened(values, spread) ** 2)),
             degrees_of_freedom=residual.size - len(names),
@@ -186,40 +231,99 @@ class Misfit:
             _form=self.form,
         )
 
-    def _with_scatter(self, start: Array) -> tuple[Array, float]:
-        """Maximise the restricted likelihood over the parameters and the logarithm of the scatter.
+    def _with_scatter(self, start: Array) -> tuple[Array, Scatter]:
+        """Maximise the restricted likelihood over the parameters and the logarithms of the scatters.
 
         Residuals about a fitted law are smaller than those about the true one: without the determinant of
         the information on the parameters the scatter, and all errors with it, would come out too small.
         """
         rough = np.std((self.after / self.before) - self.form.coefficient(self.before, start))
-        first = np.append(start, np.log(max(float(rough), 1e-8)))
+        first = float(np.log(max(float(rough), 1e-8)))
+        if self.series > 1:  # of many coefficients, for which each parameter takes long
+
+            def of_scatters(point: Array) -> float:
+                return _finite(lambda: -self._restricted(start, Scatter(*map(_spread, point))).value)
+
+            best = minimize(of_scatters, [first, first - 1.0], method="Nelder-Mead", options={"fatol": 1e-6})
+            spread = Scatter(*map(_spread, best.x))
+            return self.least_squares(start, spread), spread
         scale = np.append(np.maximum(np.abs(start), 1e-3), 1.0)
 
         def loss(point: Array) -> float:
             values = point * scale
             if np.any(values[:-1] < self.form.least):
                 return _IMPOSSIBLE
-            try:
-                scatter = _spread(values[-1])
-                _, determinant = np.linalg.slogdet(self.information(values[:-1], scatter))
-                value = 0.5 * float(determinant) - self.loglikelihood(values[:-1], scatter)
-            except (np.linalg.LinAlgError, ValueError):
-                return _IMPOSSIBLE
-            return value if np.isfinite(value) else _IMPOSSIBLE
+            there = Scatter(_spread(values[-1]))
+            return _finite(lambda: -self._restricted(values[:-1], there, step=False).value)
 
         found = minimize(
             loss,
-            first / scale,
+            np.append(start, first) / scale,
             method="Nelder-Mead",
             options={"xatol": 1e-7, "fatol": 1e-9, "maxiter": 4000, "maxfev": 4000},
         )
         values = found.x * scale
-        return values[:-1], _spread(values[-1])
+        return values[:-1], Scatter(_spread(values[-1]))
 
-    def _scatter_error(self, values: Array, scatter: float) -> float:
+    def _restricted(self, values: Array, scatter: Scatter, *, step: bool = True) -> Restricted:
+        """Return the logarithm of the restricted likelihood, with the prior of what lies between series.
+
+        With `step` it is that of the parameters that are best with this scatter, by one step from the values.
+        """
+        lower = np.linalg.cholesky(self.covariance(values, scatter))
+        slopes = self.before[:, None] * by_parameters(self.form, self.before, values)
+        both = solve_triangular(lower, np.column_stack([self.residual(values), slopes]), lower=True)
+        residual, slopes = both[:, 0], both[:, 1:]
+        information = np.asarray(slopes.T @ slopes, dtype=np.float64)
+        value = -0.5 * float(residual @ residual) - float(np.log(np.diag(lower)).sum())
+        value -= 0.5 * float(np.linalg.slogdet(information)[1])
+        value -= float(np.log1p((scatter.between / _USUAL_BETWEEN) ** 2))
+        if not step:
+            return Restricted(value, np.zeros_like(values), information)
+        pull = slopes.T @ residual
+        move = np.asarray(np.linalg.solve(information, pull), dtype=np.float64)
+        return Restricted(value + 0.5 * float(pull @ move), move, information)
+
+    def _averaged(
+        self, values: Array, best: Scatter, error: Scatter, covariance: Array
+    ) -> tuple[Array, Scatter]:
+        """Average over scatters that are not excluded, uniform from 0: of one impact if 0 is not excluded.
+
+        With the one best scatter, which may be 0, the errors of the parameters would be too small.
+        """
+
+        def value(**change: float) -> float:
+            return self._restricted(values, best._replace(**change)).value
+
+        def reach(name: str) -> Array:
+            """Return scatters of one kind up to where they are excluded."""
+            top = max(getattr(best, name), 1e-6)
+            while top < 1.0 and value(**{name: top}) > largest - _AVERAGED:
+                top *= 1.5
+            return np.asarray(top * _STEPS)
+
+        largest = value()
+        try:
+            excluded = 2.0 * (largest - value(one=0.0)) > _DECIDED
+        except np.linalg.LinAlgError:  # without errors of the times there is a scatter
+            excluded = True
+        if excluded and self.series == 1:
+            return covariance, error
+        ones = np.array([best.one]) if excluded else reach("one")
+        betweens = reach("between") if self.series > 1 else np.zeros(1)
+        pairs = [Scatter(one, between) for one in ones for between in betweens]
+        found = [self._restricted(values, each) for each in pairs]
+        weights = np.exp([each.value - largest for each in found])
+        weights /= weights.sum()
+        inside = [np.linalg.inv(each.information) + np.outer(each.move, each.move) for each in found]
+        off = np.sqrt(weights @ (np.array(pairs) - best) ** 2)
+        own = error.one if excluded else float(off[0])
+        return np.einsum("k,kij->ij", weights, np.array(inside)), Scatter(own, float(off[1]))
+
+    def _scatter_error(self, values: Array, scatter: Scatter) -> float:
         """Return the standard error of the scatter, from its information (1/2) tr (C⁻¹ dC/dσ)²."""
         weighted = cho_solve(
-            cho_factor(self.covariance(values, scatter), lower=True), np.diag(2.0 * scatter * self.before**2)
+            cho_factor(self.covariance(values, scatter), lower=True),
+            np.diag(2.0 * scatter.one * self.before**2),
         )
         return float(1.0 / np.sqrt(0.5 * np.trace(weighted @ weighted)))
