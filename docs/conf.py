@@ -100,7 +100,7 @@ if site := os.environ.get("RESTITUTION_SITE"):
 # left and its top are, and its width, as shares of those of the figure.
 CARDS = {
     "theorist": ("first-impact.png", 0.5, 0.16, 0.5),
-    "experimenter": ("roundness.png", 0.0, 0.3, 0.6),
+    "experimenter": ("roundness.png", 0.55, 0.0, 0.44),
     "dem": ("golf.png", 0.02, 0.0, 0.44),
     "lecturer": ("impulses.png", 0.335, 0.12, 0.33),
     "first-impact": ("first-impact.png", 0.02, 0.52, 0.46),
@@ -122,7 +122,7 @@ CARDS = {
     "names": ("impact.png", 0.53, 0.22, 0.44),
     "studies": ("near_round_maps.png", 0.02, 0.04, 0.4),
     "listening": ("clock.png", 0.05, 0.3, 0.5),
-    "roundness": ("required.png", 0.0, 0.4, 0.6),
+    "roundness": ("required.png", 0.56, 0.05, 0.43),
     "inference": ("calibration.png", 0.0, 0.0, 0.36),
     "lab-sheet": ("lab-sheet.png", 0.0, 0.1, 0.5),
 }
