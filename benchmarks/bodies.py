@@ -174,8 +174,27 @@ LEARN = Row(
     {"spin": THROWN["spin"]},
     learned=True,
 )
+# What friction costs: each body over itself without.
+FRICTION = tuple(
+    (
+        Row(f"{name} spinning, without friction", 1.0, body, SMOOTH, SPINNING),
+        tuple(
+            Row(f"{name} spinning, Coulomb, {law}", target, body, coulomb(law), SPINNING)
+            for law in HYPOTHESES
+        ),
+    )
+    for name, target, body in (
+        ("triaxial ellipsoid", 2.5, ELLIPSOID),
+        ("clump of 4", 3.5, FOUR),
+        ("die", 4.0, DIE),
+        ("spheroid 0.8", 6.0, spheroid(0.8)),
+    )
+)
 
-EVERY = (YARDSTICK, *ROWS, SPUN, *RIGID, LEARN_YARDSTICK, LEARN)
+EVERY = (
+    *(YARDSTICK, *ROWS, SPUN, *RIGID, LEARN_YARDSTICK, LEARN),
+    *(row for smooth, rough in FRICTION for row in (smooth, *rough)),
+)
 
 
 @dataclass(frozen=True)
@@ -232,7 +251,7 @@ def timed(row: Row, threads: int = 1) -> Timed:
 
 def table(rounds: int, only: str = "") -> Iterator[str]:
     """Every row over the yardstick, one thread; `only` those whose name contains this."""
-    for yardstick, rows in ((YARDSTICK, ROWS), (SPUN, RIGID), (LEARN_YARDSTICK, (LEARN,))):
+    for yardstick, rows in ((YARDSTICK, ROWS), (SPUN, RIGID), *FRICTION, (LEARN_YARDSTICK, (LEARN,))):
         chosen = [row for row in rows if only in row.name]
         if not chosen:
             continue
