@@ -57,9 +57,9 @@ def main() -> None:
                 told = subprocess.run(how, check=True, capture_output=True, text=True).stdout
                 gases.append([line.split() for line in told.splitlines()])
             rows = np.array(gases, dtype=float)
-            print(
-                f"{mode} from {speed} m/s: s; m/s, contacts of a sphere, share below 0.05, and their errors"
-            )
+            print(f"{mode} from {speed} m/s: s, m/s, contacts of a sphere, share below 0.05; of seed 1")
+            print(rows[0])
+            print("means of all seeds, and the standard errors of the last three")
             error = rows.std(axis=0, ddof=1) / np.sqrt(SEEDS)
             print(np.column_stack([rows.mean(axis=0), error[:, 1:]]).round(4))
 
