@@ -38,7 +38,9 @@ def listen(
         float | None, typer.Option(metavar="S", help="Standard error of times in a table without one, s.")
     ] = None,
     gravity: Annotated[float, typer.Option(metavar="G", help="Acceleration of gravity, m/s2.")] = 9.81,
-    gravity_error: Annotated[float, typer.Option(metavar="S", help="Standard error of gravity, m/s2.")] = 0.0,
+    gravity_error: Annotated[
+        float, typer.Option(metavar="S", help="Standard error of gravity, m/s2; 0.03 covers the Earth.")
+    ] = 0.03,
     out_of_roundness: Annotated[
         float | None, typer.Option(metavar="T", help="Out-of-roundness of the ball, m, if it was measured.")
     ] = None,

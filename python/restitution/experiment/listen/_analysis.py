@@ -76,7 +76,7 @@ class Setting(Parameters):
     time_uncertainty : float, optional
         Standard error of the times of a table that does not give it, in s.
     gravity, gravity_uncertainty : float
-        g and its standard error, in m/s².
+        g and its standard error, in m/s²: 3e-3 of g covers the surface of the Earth, 9.78 to 9.83.
     out_of_roundness, roughness : float, optional
         Of the ball, the second as Ra, in m, where they were measured.
     wall : float, optional
@@ -94,7 +94,7 @@ class Setting(Parameters):
     drop_uncertainty: Annotated[Number, Field(ge=0, description="m")] = 0.0
     time_uncertainty: Annotated[Number | None, Field(gt=0, description="s"), _TIME_OR_NONE] = None
     gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
-    gravity_uncertainty: Annotated[Number, Field(ge=0, description="m/s²")] = 0.0
+    gravity_uncertainty: Annotated[Number, Field(ge=0, description="m/s²")] = 0.03
     out_of_roundness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
     roughness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
     wall: Wall = None
