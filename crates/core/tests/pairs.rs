@@ -1,7 +1,7 @@
 //! Encounters of two bodies in free flight.
 
 use restitution_core::pair::{
-    Encounters, Ending, Hit, Meeting, PairState, Partner, Table, encounter,
+    Encounters, Ending, Hit, Meeting, PairState, PairTable, Partner, encounter,
 };
 use restitution_core::{
     AnyBody, Dumbbell, Frictionless, Law, Level, Matter, Monitor, Quaternion, Resources, Rigid,
@@ -116,7 +116,7 @@ fn drawn<'a>(bodies: [&'a Partner; 2], count: usize) -> Encounters<'a> {
     }
 }
 
-fn record(run: &Encounters<'_>, law: &Law<'_>, threads: usize, level: Level) -> Table {
+fn record(run: &Encounters<'_>, law: &Law<'_>, threads: usize, level: Level) -> PairTable {
     let resources = Resources { threads, level };
     run.record(law, None, true, resources, &Monitor::default())
         .unwrap()
@@ -285,7 +285,7 @@ fn any_number_of_threads_gives_the_same_encounters() {
     let first = record(&run, &law, 1, Level::Scalar);
     for (threads, level) in Level::available().enumerate() {
         let again = record(&run, &law, threads + 1, level);
-        let bits = |table: &Table| -> Vec<u64> {
+        let bits = |table: &PairTable| -> Vec<u64> {
             table
                 .encounters
                 .iter()

@@ -20,7 +20,7 @@
 use super::certify::INVISIBLE;
 use super::plane::GapExpansion;
 use crate::math::{Quaternion, Symmetric, Vector};
-use crate::motion::{Pose, Turn};
+use crate::motion::{BodyPose, Turn};
 use crate::shape::{Feature, Piece, PieceKind, Top};
 
 /// Most steps of a search.
@@ -137,7 +137,7 @@ impl<'a> PairSearch<'a> {
         &self,
         flight: &PairFlight,
         parts: [usize; 2],
-        (time, poses): (f64, &[Pose; 2]),
+        (time, poses): (f64, &[BodyPose; 2]),
     ) -> Option<BallGap> {
         let [first, second] = self.parts(parts);
         let PieceKind::Ball(place, radius) = first.kind else {
@@ -222,7 +222,7 @@ impl<'a> PairSearch<'a> {
         &self,
         apart: Vector,
         parts: [usize; 2],
-        poses: &[Pose; 2],
+        poses: &[BodyPose; 2],
         between: &Between,
     ) -> (Vector, Vector) {
         let pieces = self.parts(parts);
@@ -319,7 +319,7 @@ impl<'a> PairSearch<'a> {
         &self,
         flight: &PairFlight,
         parts: [usize; 2],
-        (time, poses): (f64, &[Pose; 2]),
+        (time, poses): (f64, &[BodyPose; 2]),
         left: Option<PairDeparture>,
         normal: &mut Vector,
     ) -> (f64, f64, f64) {
@@ -658,18 +658,18 @@ fn turning(parting: &Parting<'_>, frames: Frames) -> Vector {
 
 /// Attitudes, and ω in space.
 #[inline(always)]
-fn frames(poses: &[Pose; 2]) -> Frames {
-    let frame = |pose: &Pose| match pose {
-        Pose::Any(attitude, spin) => (*attitude, attitude.rotate(*spin)),
+fn frames(poses: &[BodyPose; 2]) -> Frames {
+    let frame = |pose: &BodyPose| match pose {
+        BodyPose::Any(attitude, spin) => (*attitude, attitude.rotate(*spin)),
         // Of balls on an axis: a rotation that takes the axis where it is.
-        Pose::Axis(axis, [e, change, _]) => (Pose::about(*axis, *e), e.cross(*change)),
+        BodyPose::Axis(axis, [e, change, _]) => (BodyPose::about(*axis, *e), e.cross(*change)),
     };
     [frame(&poses[0]), frame(&poses[1])]
 }
 
 /// Both bodies at a time.
 #[inline(always)]
-pub(crate) fn poses(flight: &mut PairFlight, time: f64) -> [Pose; 2] {
+pub(crate) fn poses(flight: &mut PairFlight, time: f64) -> [BodyPose; 2] {
     let [one, two] = &mut flight.turns;
     [one.at(time), two.at(time)]
 }

@@ -20,7 +20,7 @@ pub(crate) enum Turn {
 }
 
 /// A body at a time: its axis with **e**′ and **e**″, or attitude and ω in its own axes.
-pub(crate) enum Pose {
+pub(crate) enum BodyPose {
     Axis(usize, [Vector; 3]),
     Any(Quaternion, Vector),
 }
@@ -72,24 +72,24 @@ impl Turn {
 
     /// The body at a time ≥ 0.
     #[inline(always)]
-    pub fn at(&mut self, time: f64) -> Pose {
+    pub fn at(&mut self, time: f64) -> BodyPose {
         match self {
             Self::Axis(axis, [along, second, third], rate) => {
                 let (sine, cosine) = sincos(*rate * time);
                 let level = third.mul_add(sine, *second * cosine);
                 let change = third.mul_add(cosine, *second * -sine) * *rate;
                 let bend = level * -(*rate * *rate);
-                Pose::Axis(*axis, [*along + level, change, bend])
+                BodyPose::Axis(*axis, [*along + level, change, bend])
             }
             Self::Any(rotation) => {
                 let (attitude, spin) = rotation.at(time);
-                Pose::Any(attitude, spin)
+                BodyPose::Any(attitude, spin)
             }
         }
     }
 }
 
-impl Pose {
+impl BodyPose {
     /// Where a point of the body is, from the centre of mass, and its velocity relative to it, in space.
     #[inline(always)]
     pub fn moves(&self, point: Vector) -> [Vector; 2] {

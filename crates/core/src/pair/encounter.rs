@@ -7,7 +7,7 @@ use super::Partner;
 use crate::contact::{Between, PairDeparture, PairFlight, PairSearch, PairTouch};
 use crate::law::{Compliance, Law};
 use crate::math::{Quaternion, Symmetric, Vector};
-use crate::motion::{Pose, Rotation, Turn};
+use crate::motion::{BodyPose, Rotation, Turn};
 use crate::simd::Level;
 use crate::{COLLAPSE_RUN, Fault};
 use pulp::{Simd, WithSimd};
@@ -116,7 +116,7 @@ pub fn narrowest(bodies: [&Partner; 2], states: &[PairState; 2]) -> f64 {
         pieces: bodies.map(|body| &body.pieces[..]),
         size: bodies[0].reach + bodies[1].reach,
     };
-    let turning = std::array::from_fn(|i| Turning::new(bodies[i], &states[i]));
+    let turning = std::array::from_fn(|i| FreeBody::new(bodies[i], &states[i]));
     let apart = states[0].position - states[1].position;
     search.narrowest(&mut flight(bodies, apart, Vector::default(), &turning))
 }
@@ -143,12 +143,12 @@ impl WithSimd for Following<'_, '_> {
 
 /// A body in flight: attitude of the principal axes, and ω in them.
 #[derive(Clone, Copy)]
-struct Turning {
+struct FreeBody {
     attitude: Quaternion,
     spin: Vector,
 }
 
-impl Turning {
+impl FreeBody {
     #[inline(always)]
     fn new(body: &Partner, state: &PairState) -> Self {
         let attitude = state.attitude * body.axes;
@@ -166,8 +166,8 @@ impl Following<'_, '_> {
             pieces: bodies.map(|body| &body.pieces[..]),
             size: reach,
         };
-        let mut turning: [Turning; 2] =
-            std::array::from_fn(|i| Turning::new(bodies[i], &self.states[i]));
+        let mut turning: [FreeBody; 2] =
+            std::array::from_fn(|i| FreeBody::new(bodies[i], &self.states[i]));
         let mut velocities = self.states.map(|state| state.velocity);
         let mut places = self.states.map(|state| state.position);
         let (mut departure, mut unresolved) = (None, 0);
@@ -197,10 +197,10 @@ impl Following<'_, '_> {
             clock += time;
             for i in 0..2 {
                 places[i] = velocities[i].mul_add(time, places[i]);
-                let Turning { attitude, spin } = turning[i];
+                let FreeBody { attitude, spin } = turning[i];
                 if !bodies[i].is_plane() {
                     let (attitude, spin) = Rotation::new(bodies[i].top, attitude, spin).at(time);
-                    turning[i] = Turning { attitude, spin };
+                    turning[i] = FreeBody { attitude, spin };
                 }
             }
             let Some(touch) = found else {
@@ -232,7 +232,7 @@ impl Following<'_, '_> {
             }
         };
         let states = std::array::from_fn(|i| {
-            let Turning { attitude, spin } = turning[i];
+            let FreeBody { attitude, spin } = turning[i];
             PairState {
                 position: places[i],
                 velocity: velocities[i],
@@ -299,12 +299,12 @@ impl Following<'_, '_> {
         touch: &PairTouch,
         places: &[Vector; 2],
         velocities: &mut [Vector; 2],
-        turning: &mut [Turning; 2],
+        turning: &mut [FreeBody; 2],
     ) -> Result<f64, Trouble> {
         let bodies = self.bodies;
         let apart = places[0] - places[1];
         let velocity = velocities[0] - velocities[1];
-        let poses = [0, 1].map(|i| Pose::Any(turning[i].attitude, turning[i].spin));
+        let poses = [0, 1].map(|i| BodyPose::Any(turning[i].attitude, turning[i].spin));
         let [row, column] = touch.parts;
         let between = &self.between[row * bodies[1].pieces.len() + column];
         // One point for both, so that the angular momentum stays what it is.
@@ -352,10 +352,10 @@ fn flight(
     bodies: [&Partner; 2],
     apart: Vector,
     velocity: Vector,
-    turning: &[Turning; 2],
+    turning: &[FreeBody; 2],
 ) -> PairFlight {
     let [one, two] = [0, 1].map(|i| {
-        let (body, Turning { attitude, spin }) = (bodies[i], turning[i]);
+        let (body, FreeBody { attitude, spin }) = (bodies[i], turning[i]);
         Turn::new(&body.top, body.axis, attitude, spin)
     });
     PairFlight {

@@ -7,5 +7,5 @@ mod sample;
 
 pub use encounter::{Ending, Hit, Outcome, PairState, Trouble, encounter, narrowest};
 pub use partner::Partner;
-pub use run::{ENCOUNTER, Encountered, HIT, PairVariable, Table};
+pub use run::{ENCOUNTER, Encountered, HIT, PairTable, PairVariable};
 pub use sample::{Encounters, Meeting};

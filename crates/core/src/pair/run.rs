@@ -204,7 +204,7 @@ pub const HIT: &[PairVariable] = &[
 
 /// Recorded encounters, row by row, and their contacts one after the other.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Table {
+pub struct PairTable {
     /// Rows of [`ENCOUNTER`].
     pub encounters: Vec<f64>,
     /// Rows of [`HIT`].
@@ -234,13 +234,13 @@ impl Encounters<'_> {
         contacts: bool,
         resources: Resources,
         monitor: &Monitor,
-    ) -> Result<Table, Error> {
+    ) -> Result<PairTable, Error> {
         let tables = self.blocks(
             law,
             given,
             resources,
             monitor,
-            |found, hits, table: &mut Table| {
+            |found, hits, table: &mut PairTable| {
                 self.write(found, &mut table.encounters);
                 if contacts {
                     for hit in hits {
@@ -256,11 +256,13 @@ impl Encounters<'_> {
                 }
             },
         )?;
-        Ok(tables.into_iter().fold(Table::default(), |mut all, table| {
-            all.encounters.extend(table.encounters);
-            all.hits.extend(table.hits);
-            all
-        }))
+        Ok(tables
+            .into_iter()
+            .fold(PairTable::default(), |mut all, table| {
+                all.encounters.extend(table.encounters);
+                all.hits.extend(table.hits);
+                all
+            }))
     }
 
     /// Follows all encounters in blocks, each of which is summed up by itself, in their order.
@@ -287,7 +289,7 @@ impl Encounters<'_> {
                 }
                 let rows = number * BLOCK..self.count.min((number + 1) * BLOCK);
                 let size = rows.len() as u64;
-                let block = Block {
+                let block = EncounterBlock {
                     encounters: self,
                     law,
                     given,
@@ -386,7 +388,7 @@ impl Encounters<'_> {
 }
 
 /// Some encounters.
-struct Block<'a, 'b> {
+struct EncounterBlock<'a, 'b> {
     encounters: &'a Encounters<'a>,
     law: &'a Law<'b>,
     given: Option<&'a [[PairState; 2]]>,
@@ -394,7 +396,7 @@ struct Block<'a, 'b> {
     between: &'a mut [Between],
 }
 
-impl Block<'_, '_> {
+impl EncounterBlock<'_, '_> {
     fn sum<T: Default>(
         self,
         level: Level,
