@@ -138,6 +138,16 @@ def laws(contacts: int, images: Path | None) -> str:
     return "\n\n".join([_parameters("law", core.LAWS), impulse, _parameters("material", core.MATERIALS)])
 
 
+def gas(particles: int, images: Path | None) -> str:
+    """Make the table and the figure of examples/gas.py."""
+    script = _script("gas")
+    gases = script.measure(particles)
+    if images is not None:
+        for style in SITE:
+            script.draw(gases, style=style).savefig(images / f"gas{style[4:]}.png", dpi=200)
+    return str(script.table(gases))
+
+
 def dice(particles: int, images: Path | None) -> str:
     """Make the table and the figure of examples/dice.py."""
     script = _script("dice")
@@ -174,6 +184,7 @@ BLOCKS = {
     "dice": Block(dice, 1000, 5, ("dice.png",)),
     "energy": Block(energy, 10_000_000, 20_000, ("laws.png",)),
     "fits": Block(fits, 4000, 100),
+    "gas": Block(gas, 20_000, 40, ("gas.png",)),
     "imperfections": Block(imperfections, 100, 4, ("imperfections.png",)),
     "laws": Block(laws, 0, 0),
     "names": Block(names, 0, 0),

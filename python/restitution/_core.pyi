@@ -230,6 +230,17 @@ def simulate_series(
     threads: int,
     columns: Sequence[str],
 ) -> tuple[_Table, KeyboardInterrupt | None]: ...
+
+GAS_WHOLE: tuple[str, ...]
+GAS_KIND: tuple[str, ...]
+
+def cool(
+    kinds: Sequence[tuple[Solid | Rigid, int, float, tuple[float, float, float], tuple[bool, bool, bool]]],
+    law: Law,
+    course: Mapping[str, Any],
+    threads: int,
+    progress: Callable[[int], None] | None,
+) -> tuple[npt.NDArray[np.float64], KeyboardInterrupt | None]: ...
 def columns(body: Solid | Rigid, law: Law, state: bool = False) -> list[str]: ...
 def bytes_per_impact(columns: Sequence[str]) -> int: ...
 

@@ -179,7 +179,7 @@ def test_ctrl_c_ends_what_takes_long(make: Callable[[], float]) -> None:
 
 def test_a_clump_in_pieces_is_asked_about() -> None:
     law = rs.Frictionless(normal=0.9)
-    how = {"particles": 2, "impacts": 2}
+    how: dict[str, Any] = {"particles": 2, "impacts": 2}
     pieces = rs.Clump(spheres=[(0, 0, 0, 1e-3), (6e-3, 6e-3, 6e-3, 1e-3)])
     with pytest.warns(
         UserWarning, match=r"spheres\[1\] is 0\.004 m \(4 radii\) away from others along x: is"

@@ -113,7 +113,7 @@ def test_spheres_cool_as_haff_says() -> None:
 @pytest.mark.parametrize(("normal", "beta"), [(0.9, 0.5), (0.9, -0.5), (0.7, 0.1), (1.0, 0.0)])
 def test_rough_spheres(normal: float, beta: float) -> None:
     """The ratio of the temperatures in closed form (Huthmann and Zippelius 1997)."""
-    law = rs.TangentialRestitution(normal=normal, tangential=beta)
+    law = rs.TangentialRestitution(normal=normal, tangential=-beta)
     q = 0.4
     eta = q * (1 + beta) / (2 * (1 + q))
     a, b, c = (1 - normal**2) / 4 + eta * (1 - eta), eta**2 / q, eta / q * (1 - eta / q)
@@ -122,7 +122,7 @@ def test_rough_spheres(normal: float, beta: float) -> None:
 
 
 def test_perfectly_rough_elastic_spheres_share_their_energy() -> None:
-    law = rs.TangentialRestitution(normal=1.0, tangential=1.0)
+    law = rs.TangentialRestitution(normal=1.0, tangential=-1.0)
     found = theory.rates(dumbbell(0.0), law, **EQUAL)
     assert abs(found.translational) + abs(found.rotational) < 1e-12 * found.contacts
 

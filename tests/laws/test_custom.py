@@ -365,9 +365,13 @@ def test_one_rule_for_impulses_that_pull(body: Any) -> None:
             data = rs.simulate(body, law, **how)
         assert data.attrs["pulling_impacts"] > 0
     assert data.attrs["pulling_impacts"] == pytest.approx(sum(pulled), abs=0.02 * sum(pulled))
-    bins = {"velocity_bins": np.linspace(-1.0, 2.0, 4), "restitution_bins": np.linspace(-1.0, 3.0, 5)}
+    bins: dict[str, Any] = {
+        "velocity_bins": np.linspace(-1.0, 2.0, 4),
+        "restitution_bins": np.linspace(-1.0, 3.0, 5),
+    }
     data = rs.simulate(body, known, **how)
-    for more in ({}, {"counts_only": True}):
+    many: tuple[dict[str, Any], ...] = ({}, {"counts_only": True})
+    for more in many:
         with pytest.warns(rs.PullWarning, match="let the plane pull") as told:
             found = rs.statistics(body, known, **how, **bins, **more)
         assert [one.category for one in told].count(rs.PullWarning) == 1

@@ -190,6 +190,10 @@ CALLS: dict[str, Call] = {
         },
     ),
     "analytic.negative_threshold": (analytic.negative_threshold, some("body", "law")),
+    "gas.cool": (
+        gas.cool,
+        some("body", law=SMOOTH, particles=20, collisions=1.0, batches=2, samples=2, **WARM),
+    ),
     "theory.rates": (gas.theory.rates, some("body", law=SMOOTH, **WARM)),
     "theory.steady_ratio": (gas.theory.steady_ratio, some("body", law=SMOOTH)),
     "theory.haff_time": (

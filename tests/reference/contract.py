@@ -107,6 +107,9 @@ _AFTER = r"(?= = |: | has | holds | goes | lacks | gave |, \w+(?:: |, )| \* )"
 """What follows the name of an argument, of several, or of an element of it."""
 
 FITTING: dict[str, str] = {
+    "gas.cool.spin_temperature": "rotational_temperature",
+    "gas.cool.batches": "particles",
+    "gas.cool.translational_temperature": "rotational_temperature",
     "theory.cooling.number_density": "times",
     "theory.cooling.translational_temperature": "times",
     "Spheroid.equatorial": "polar",

@@ -39,6 +39,7 @@ pub mod describe;
 pub mod distribution;
 mod drop;
 mod error;
+pub mod gas;
 pub mod law;
 mod math;
 mod memory;

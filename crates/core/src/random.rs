@@ -46,6 +46,14 @@ pub fn of_encounter(seed: u64, encounter: u64, draw: u32) -> (f64, f64) {
     (unit(a, b), unit(c, d))
 }
 
+/// Two uniform numbers in [0, 1) for a draw of a gas: counter = (draw, 0, 5).
+pub fn of_gas(seed: u64, draw: u64) -> (f64, f64) {
+    let (low, high) = halves(draw);
+    let key = halves(seed);
+    let [a, b, c, d] = philox4x32_10([low, high, 0, 5], [key.0, key.1]);
+    (unit(a, b), unit(c, d))
+}
+
 fn unit(low: u32, high: u32) -> f64 {
     let bits = u64::from(low) | u64::from(high) << 32;
     (bits >> 11) as f64 * 2.0_f64.powi(-53)
@@ -99,6 +107,8 @@ mod tests {
         stream(&|i| of_impact(i, 3, 0));
         stream(&|i| of_encounter(7, i, 0).0);
         stream(&|i| of_encounter(7, 3, i as u32).1);
+        stream(&|i| of_gas(7, i).0);
+        stream(&|i| of_gas(7, i).1);
         stream(&|i| {
             if i % 2 == 0 {
                 pair(7, i / 2).0

@@ -5,6 +5,7 @@ mod counts;
 mod describe;
 mod distribution;
 mod errors;
+mod gas;
 mod histogram;
 mod laws;
 mod pair;
@@ -128,6 +129,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     bodies::add_to(module)?;
     laws::add_to(module)?;
     pair::add_to(module)?;
+    gas::add_to(module)?;
     distribution::add_to(module)?;
     counts::add_to(module)?;
     records::add_to(module)?;

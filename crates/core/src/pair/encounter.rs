@@ -122,7 +122,7 @@ pub fn narrowest(bodies: [&Partner; 2], states: &[PairState; 2]) -> f64 {
 }
 
 /// An encounter, compiled once for each SIMD level: whoever follows one runs it at a level.
-pub(super) struct Following<'a, 'b> {
+pub(crate) struct Following<'a, 'b> {
     pub bodies: [&'a Partner; 2],
     pub law: &'a Law<'b>,
     pub states: [PairState; 2],

@@ -5,7 +5,10 @@ mod partner;
 mod run;
 mod sample;
 
+pub(crate) use encounter::Following;
 pub use encounter::{Ending, Hit, Outcome, PairState, Trouble, encounter, narrowest};
 pub use partner::Partner;
+pub(crate) use run::failed;
 pub use run::{ENCOUNTER, Encountered, HIT, PairTable, PairVariable};
+pub(crate) use sample::{Draws, approach};
 pub use sample::{Encounters, Meeting};

@@ -453,7 +453,12 @@ fn check_apart(bodies: [&Partner; 2], states: &[PairState; 2]) -> Result<(), Err
 }
 
 /// The error of an encounter that cannot be followed.
-fn failed(law: &Law<'_>, trouble: Trouble, (seed, number): (u64, u64), contacts: usize) -> Error {
+pub(crate) fn failed(
+    law: &Law<'_>,
+    trouble: Trouble,
+    (seed, number): (u64, u64),
+    contacts: usize,
+) -> Error {
     match trouble {
         Trouble::Unconverged => Error::Numerical {
             particle: number,

@@ -105,11 +105,7 @@ impl Encounters<'_> {
     /// The bodies of an encounter, where they come through the sphere.
     #[inline(always)]
     pub(super) fn draw(&self, number: u64) -> [PairState; 2] {
-        let mut draws = Draws {
-            seed: self.seed,
-            number,
-            draw: 0,
-        };
+        let mut draws = Draws::new(self.seed, number);
         let (places, velocities) = if self.bodies[1].is_plane() {
             self.onto_plane(&mut draws)
         } else {
@@ -160,12 +156,7 @@ impl Encounters<'_> {
             Some(b) => b / reach,
             None => square.sqrt(),
         };
-        // Two directions across u.
-        let first = Vector::new(-sine, cosine, 0.0);
-        let second = u.cross(first);
-        let (s, c) = sincos(TAU * around);
-        let back = (1.0 - b * b).max(0.0).sqrt();
-        let apart = (first * (b * c) + second * (b * s) - u * back) * reach;
+        let apart = approach(u, Vector::new(-sine, cosine, 0.0), b, around) * reach;
         let (speed, drift) = match self.meeting {
             Meeting::Speed(speed) => (speed, Vector::default()),
             Meeting::Temperatures(temperatures) => {
@@ -210,23 +201,42 @@ impl Encounters<'_> {
     }
 }
 
+/// The place on the unit sphere at which a body comes in along **u**, at the distance b from the parallel through the centre; `across` is a unit vector
+/// normal to **u**, from which the azimuth counts, in turns.
+#[inline(always)]
+pub(crate) fn approach(u: Vector, across: Vector, b: f64, azimuth: f64) -> Vector {
+    let second = u.cross(across);
+    let (s, c) = sincos(TAU * azimuth);
+    let back = (1.0 - b * b).max(0.0).sqrt();
+    across * (b * c) + second * (b * s) - u * back
+}
+
 /// The random numbers of an encounter.
-struct Draws {
+pub(crate) struct Draws {
     seed: u64,
     number: u64,
     draw: u32,
 }
 
 impl Draws {
+    /// Those of an encounter, or of a particle of a gas.
+    pub fn new(seed: u64, number: u64) -> Self {
+        Self {
+            seed,
+            number,
+            draw: 0,
+        }
+    }
+
     #[inline(always)]
-    fn pair(&mut self) -> (f64, f64) {
+    pub fn pair(&mut self) -> (f64, f64) {
         self.draw += 1;
         of_encounter(self.seed, self.number, self.draw - 1)
     }
 
     /// Three normal numbers, by G. E. P. Box and M. E. Muller (1958).
     #[inline(always)]
-    fn normals(&mut self) -> [f64; 3] {
+    pub fn normals(&mut self) -> [f64; 3] {
         let ((a, b), (c, d)) = (self.pair(), self.pair());
         let ((s, t), (u, _)) = (sincos(TAU * b), sincos(TAU * d));
         let [p, q] = [a, c].map(|x| (-2.0 * ln(1.0 - x)).sqrt());
@@ -235,7 +245,7 @@ impl Draws {
 
     /// An attitude, uniform on SO(3): K. Shoemake, *Uniform random rotations*, Graphics Gems III (1992).
     #[inline(always)]
-    fn attitude(&mut self) -> Quaternion {
+    pub fn attitude(&mut self) -> Quaternion {
         let ((a, b), (c, _)) = (self.pair(), self.pair());
         let ((s, t), (u, v)) = (sincos(TAU * b), sincos(TAU * c));
         let (p, q) = ((1.0 - a).sqrt(), a.sqrt());

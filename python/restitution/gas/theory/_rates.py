@@ -74,7 +74,7 @@ class _Closure(NamedTuple):
 
 def _closure(body: AnyBody, law: Law, nodes: int = _NODES) -> _Closure:
     if isinstance(law, TangentialRestitution) and isinstance(law.normal, float):
-        return _rough_spheres(body, law.normal, law.tangential)
+        return _rough_spheres(body, law.normal, -law.tangential)
     if not isinstance(law, Frictionless) or not isinstance(law.normal, float):
         allowed = "Frictionless with a number for normal, or for spheres TangentialRestitution with one"
         raise ParameterError(wrong("law", law, allowed))
@@ -96,7 +96,7 @@ def _closure(body: AnyBody, law: Law, nodes: int = _NODES) -> _Closure:
 
 
 def _rough_spheres(body: AnyBody, normal: float, tangential: float) -> _Closure:
-    """Huthmann and Zippelius, Phys. Rev. E 56, R6275 (1997); their β is the tangential restitution."""
+    """Huthmann and Zippelius, Phys. Rev. E 56, R6275 (1997); their β is -ε_t."""
     if not isinstance(body, Dumbbell) or not body.is_equal or body.separation > 0.0:
         allowed = "with TangentialRestitution a sphere, as Dumbbell(radius=..., separation=0)"
         raise ParameterError(wrong("body", body, allowed))
@@ -131,8 +131,8 @@ def rates(
     body : Dumbbell, Spherocylinder, Spheroid or Ellipsoid
         The particles: a dumbbell of equal balls, at most two radii apart.
     law : Frictionless or TangentialRestitution
-        With a number for its normal coefficient; the second for spheres only, of which it is the constant
-        roughness β.
+        With a number for its normal coefficient; the second for spheres only, with the constant roughness
+        β = -ε_t.
     translational_temperature, rotational_temperature : float
         T_tr and T_rot in J, > 0.
     number_density : float

@@ -1,0 +1,446 @@
+//! A dilute gas that cools: direct simulation Monte Carlo, in which every encounter is followed exactly.
+//!
+//! N particles fill a volume V = N/n without order: places are not kept, and any two of them may meet. Two with the relative velocity **u** come
+//! through the sphere of radius S, the sum of their reaches, at the rate πS²u/V. So candidates are drawn, each two particles alike, at the rate of the
+//! largest S and of a majorant c of u, and one is followed as an [`encounter`] with the probability S²u over that of the majorant, on a line that is
+//! uniform on the disc. This is M. Kac's process, without a step of time (G. A. Bird, *Molecular Gas Dynamics* (1994), Sec. 11.1, without cells). Between
+//! encounters a body turns freely for the time that has passed, or for one so long that its phase is uniform, as in the limit n → 0.
+
+mod moments;
+
+pub use moments::{GAS_KIND, GAS_WHOLE};
+
+use crate::contact::Between;
+use crate::law::Law;
+use crate::math::{Quaternion, Vector};
+use crate::motion::Rotation;
+use crate::pair::{Draws, Ending, Following, PairState, Partner, approach, failed};
+use crate::random::{of_gas, of_impact};
+use crate::simd::Level;
+use crate::threads::{Monitor, Resources};
+use crate::{Error, memory};
+use moments::{SpeciesSums, Whole};
+use std::f64::consts::{PI, TAU};
+use std::ops::RangeInclusive;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The majorant of u over twice the largest speed at the last look at all of them.
+const ROOM: f64 = 1.02;
+/// Turns, on average, after which a phase counts as uniform.
+const TURNS: f64 = 1e4;
+/// Temperatures over masses, and rates of collisions, that are followed.
+const MODERATE: RangeInclusive<f64> = 1e-75..=1e75;
+/// The largest T_rot/T_tr.
+const FASTEST: f64 = 1e6;
+/// The energy of an encounter, relative to that before, above which it is created and not rounding.
+const CREATED: f64 = 1e-12;
+
+/// Bodies of one kind. SI units, or any coherent ones.
+#[derive(Debug, Clone)]
+pub struct Species<'a> {
+    /// The body.
+    pub body: &'a Partner,
+    /// How many there are, over all batches.
+    pub particles: usize,
+    /// Their first temperature of translation, in units of energy.
+    pub translational: f64,
+    /// Those of rotation about the principal axes.
+    pub rotational: [f64; 3],
+    /// Whether contacts turn it about each of them; the energy of rotation is that about these.
+    pub turned: [bool; 3],
+}
+
+/// How far a body turns between two encounters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// As far as it does in the time between them.
+    Time,
+    /// So far that its phase is uniform.
+    Uniform,
+}
+
+/// A gas, and how long it is followed.
+#[derive(Debug, Clone)]
+pub struct Gas<'a> {
+    /// The kinds of bodies.
+    pub kinds: Vec<Species<'a>>,
+    /// Particles per volume.
+    pub density: f64,
+    /// Turning between encounters.
+    pub phase: Phase,
+    /// Gases that do not know of each other, over which the particles are spread.
+    pub batches: usize,
+    /// Encounters with contact, of a particle, after which it ends.
+    pub collisions: f64,
+    /// Looks at the gas after the first.
+    pub samples: usize,
+    /// The seed.
+    pub seed: u64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Particle {
+    velocity: Vector,
+    attitude: Quaternion,
+    spin: Vector,
+    /// When it was so.
+    time: f64,
+}
+
+impl Gas<'_> {
+    /// Follows all batches. Returns [`GAS_WHOLE`] and, for each kind, [`GAS_KIND`], of every look at each batch; all zero after a run that was cancelled.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`], and if an encounter cannot be followed.
+    pub fn cool(
+        &self,
+        law: &Law<'_>,
+        resources: Resources,
+        monitor: &Monitor,
+    ) -> Result<Vec<f64>, Error> {
+        self.check()?;
+        let next = AtomicUsize::new(0);
+        let width = GAS_WHOLE.len() + self.kinds.len() * GAS_KIND.len();
+        let size = (self.samples + 1) * width;
+        let rows = Mutex::new(memory::zeros("looks at a gas", size * self.batches)?);
+        let work = |_| {
+            loop {
+                let batch = next.fetch_add(1, Ordering::Relaxed);
+                if batch >= self.batches || monitor.is_cancelled() {
+                    return Ok(());
+                }
+                let found = Batch::new(self, batch)?.run(law, resources.level, monitor)?;
+                let mut rows = rows.lock().expect("nobody panics who holds it");
+                rows[batch * size..][..found.len()].copy_from_slice(&found);
+            }
+        };
+        let ended: Result<Vec<()>, Error> = resources
+            .each_thread(self.batches, work)?
+            .into_iter()
+            .collect();
+        ended?;
+        Ok(rows.into_inner().expect("nobody panics who holds it"))
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let holds = self.collisions.is_finite() && self.collisions > 0.0;
+        Error::unless(holds, "collisions", self.collisions, "finite and > 0")?;
+        for kind in &self.kinds {
+            let each = kind.particles / self.batches;
+            let least = "at least 2 for each of the batches";
+            Error::unless(each >= 2, "particles", kind.particles as f64, least)?;
+            let (t, inverse) = (kind.translational, kind.body.inverse_mass);
+            let warm = "> 0, and such that (T/m)² neither overflows nor underflows (J)";
+            let holds = MODERATE.contains(&(t * inverse));
+            Error::unless(holds, "translational_temperature", t, warm)?;
+            for turning in kind.rotational {
+                let warm = "in [0, 10⁶ T_tr], beyond which an encounter takes too many turns (J)";
+                let holds = (0.0..=FASTEST * t).contains(&turning);
+                Error::unless(holds, "rotational_temperature", turning, warm)?;
+            }
+            let across = kind.body.reach * kind.body.reach;
+            let rate = self.density * across * (t * inverse).sqrt();
+            let some =
+                "such that the times between collisions neither overflow nor underflow (1/m³)";
+            Error::unless(
+                MODERATE.contains(&rate),
+                "number_density",
+                self.density,
+                some,
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// One of the gases.
+struct Batch<'a> {
+    gas: &'a Gas<'a>,
+    number: usize,
+    particles: Vec<Particle>,
+    /// The number behind the last particle of each kind.
+    ends: Vec<usize>,
+    clock: f64,
+    whole: Whole,
+    /// Draws so far.
+    drawn: u64,
+    between: Vec<Between>,
+}
+
+impl<'a> Batch<'a> {
+    /// Attitudes uniform on SO(3), velocities and ω of Maxwellians, of which the mean is taken off and whose energies are those of the temperatures.
+    fn new(gas: &'a Gas<'a>, number: usize) -> Result<Self, Error> {
+        let count: usize = gas
+            .kinds
+            .iter()
+            .map(|kind| kind.particles / gas.batches)
+            .sum();
+        let mut particles = memory::empty("particles of a gas", count)?;
+        let mut ends = Vec::new();
+        for (order, kind) in gas.kinds.iter().enumerate() {
+            let body = kind.body;
+            let start = particles.len();
+            for i in 0..kind.particles / gas.batches {
+                let index = ((number * gas.kinds.len() + order) as u64) << 40 | i as u64;
+                let mut draws = Draws::new(gas.seed, index);
+                let attitude = draws.attitude();
+                let [x, y, z] = draws.normals();
+                let thermal = (kind.translational * body.inverse_mass).sqrt();
+                let turns = draws.normals();
+                let [a, b, c] = std::array::from_fn(|i| {
+                    turns[i] * (kind.rotational[i] * body.inverse_moments[i]).sqrt()
+                });
+                particles.push(Particle {
+                    velocity: Vector::new(x, y, z) * thermal,
+                    attitude,
+                    spin: (attitude * body.axes).rotate(Vector::new(a, b, c)),
+                    time: 0.0,
+                });
+            }
+            settle(&mut particles[start..], kind);
+            ends.push(particles.len());
+        }
+        let largest = gas.kinds.iter().map(|kind| kind.body.pieces.len()).max();
+        let parts = largest.unwrap_or(0);
+        Ok(Self {
+            gas,
+            number,
+            particles,
+            ends,
+            clock: 0.0,
+            whole: Whole::default(),
+            drawn: 0,
+            between: memory::filled("parts of a pair", Between::default(), parts * parts)?,
+        })
+    }
+
+    fn kind(&self, particle: usize) -> &'a Species<'a> {
+        let gas = self.gas;
+        if let [only] = &gas.kinds[..] {
+            return only;
+        }
+        &gas.kinds[self.ends.partition_point(|&end| end <= particle)]
+    }
+
+    fn draw(&mut self) -> (f64, f64) {
+        self.drawn += 1;
+        of_gas(self.gas.seed, (self.number as u64) << 48 | self.drawn)
+    }
+
+    fn run(mut self, law: &Law<'_>, level: Level, monitor: &Monitor) -> Result<Vec<f64>, Error> {
+        let gas = self.gas;
+        let count = self.particles.len();
+        let each = 0.5 * count as f64 * gas.collisions / gas.samples as f64;
+        let reach = gas
+            .kinds
+            .iter()
+            .map(|kind| kind.body.reach)
+            .fold(0.0, f64::max);
+        let area = PI * (2.0 * reach) * (2.0 * reach);
+        let pairs = count as f64 * (count - 1) as f64;
+        let mut rows = Vec::new();
+        self.look(&mut rows);
+        let mut fastest = 0.0;
+        let mut since = count;
+        let mut finished = 0;
+        while rows.len() < (gas.samples + 1) * (GAS_WHOLE.len() + gas.kinds.len() * GAS_KIND.len())
+        {
+            if since == count {
+                let square = |p: &Particle| p.velocity.dot(p.velocity);
+                fastest = 2.0 * ROOM * self.particles.iter().map(square).fold(0.0, f64::max).sqrt();
+                since = 0;
+                if monitor.is_cancelled() {
+                    return Ok(Vec::new());
+                }
+            }
+            since += 1;
+            // n/N is 1/V, and half of the ordered pairs are the pairs.
+            self.clock += 2.0 / (gas.density / count as f64 * pairs * area * fastest);
+            let (which, chance) = self.draw();
+            let place = (which * pairs) as usize;
+            let (i, j) = (place / (count - 1), place % (count - 1));
+            let j = if j < i { j } else { j + 1 };
+            let u = self.particles[i].velocity - self.particles[j].velocity;
+            let speed = u.norm();
+            let bodies = [self.kind(i).body, self.kind(j).body];
+            let both = bodies[0].reach + bodies[1].reach;
+            let share = speed / fastest * (both * both / (4.0 * reach * reach));
+            if share > 1.0 {
+                self.whole.beyond += 1.0;
+            }
+            if chance >= share {
+                continue;
+            }
+            self.meet(law, level, [i, j], bodies, u / speed, both)?;
+            while self.whole.collisions >= each * (rows_of(gas, rows.len()) as f64) {
+                self.look(&mut rows);
+                let done = self.whole.collisions as u64;
+                monitor.add_finished(done - finished);
+                finished = done;
+                if rows_of(gas, rows.len()) > gas.samples {
+                    break;
+                }
+            }
+        }
+        Ok(rows)
+    }
+
+    fn meet(
+        &mut self,
+        law: &Law<'_>,
+        level: Level,
+        pair: [usize; 2],
+        bodies: [&Partner; 2],
+        direction: Vector,
+        reach: f64,
+    ) -> Result<(), Error> {
+        let gas = self.gas;
+        let (square, around) = self.draw();
+        for (i, body) in pair.into_iter().zip(bodies) {
+            let passed = match gas.phase {
+                Phase::Time => self.clock - self.particles[i].time,
+                Phase::Uniform => {
+                    let spin = self.particles[i].spin.norm();
+                    if spin > 0.0 {
+                        self.draw().0 * TURNS * TAU / spin
+                    } else {
+                        0.0
+                    }
+                }
+            };
+            turn(&mut self.particles[i], body, passed);
+            self.particles[i].time = self.clock;
+        }
+        let across = normal_to(direction);
+        let apart = approach(direction, across, square.sqrt(), around) * reach;
+        let states: [PairState; 2] = std::array::from_fn(|side| {
+            let p = &self.particles[pair[side]];
+            PairState {
+                position: if side == 0 { apart } else { Vector::default() },
+                velocity: p.velocity,
+                attitude: p.attitude,
+                spin: p.spin,
+            }
+        });
+        let energy = |states: &[PairState; 2]| -> f64 {
+            let of = |i: usize| {
+                let (v, body) = (states[i].velocity, bodies[i]);
+                0.5 * v.dot(v) * body.mass()
+                    + body.rotational_energy(states[i].attitude, states[i].spin)
+            };
+            of(0) + of(1)
+        };
+        // The number of the encounter, for materials whose coefficient scatters.
+        let number = (self.number as u64) << 48 | self.drawn;
+        let seed = gas.seed;
+        let between = &mut self.between[..bodies[0].pieces.len() * bodies[1].pieces.len()];
+        between.fill(Between::default());
+        let outcome = level.run(Following {
+            bodies,
+            law,
+            states,
+            chance: &|contact| of_impact(seed, number, contact),
+            hit: &mut |_: &_| {},
+            between,
+        });
+        let outcome = outcome.map_err(|trouble| failed(law, trouble, (seed, number), 0))?;
+        self.whole.attempts += 1.0;
+        self.whole.steps += outcome.steps as f64;
+        if outcome.contacts == 0 {
+            return Ok(());
+        }
+        self.whole.collisions += 1.0;
+        self.whole.contacts += outcome.contacts as f64;
+        if outcome.ending == Ending::Collapse {
+            self.whole.collapses += 1.0;
+        }
+        let [before, after] = [energy(&states), energy(&outcome.states)];
+        if after > before * (1.0 + CREATED) {
+            self.whole.creating += 1.0;
+            self.whole.created += after - before;
+        }
+        for (i, state) in pair.into_iter().zip(&outcome.states) {
+            let p = &mut self.particles[i];
+            (p.velocity, p.attitude, p.spin) = (state.velocity, state.attitude, state.spin);
+        }
+        Ok(())
+    }
+
+    /// Adds a row: what has happened, and the moments of each kind now.
+    fn look(&mut self, rows: &mut Vec<f64>) {
+        rows.extend(self.whole.row(self.clock));
+        let mut start = 0;
+        for (kind, &end) in self.gas.kinds.iter().zip(&self.ends) {
+            let mut sums = SpeciesSums::default();
+            for p in &mut self.particles[start..end] {
+                turn(p, kind.body, self.clock - p.time);
+                p.time = self.clock;
+                sums.add(kind, p.velocity, p.attitude, p.spin);
+            }
+            rows.extend(sums.row((end - start) as f64));
+            start = end;
+        }
+    }
+}
+
+/// A unit vector across another.
+fn normal_to(u: Vector) -> Vector {
+    let other = if u.x.abs() < 0.6 {
+        Vector::new(1.0, 0.0, 0.0)
+    } else {
+        Vector::new(0.0, 1.0, 0.0)
+    };
+    let across = u.cross(other);
+    across / across.norm()
+}
+
+/// The number of looks that fill so many places.
+fn rows_of(gas: &Gas<'_>, places: usize) -> usize {
+    places / (GAS_WHOLE.len() + gas.kinds.len() * GAS_KIND.len())
+}
+
+/// Turns a body for a time.
+fn turn(particle: &mut Particle, body: &Partner, time: f64) {
+    let attitude = particle.attitude * body.axes;
+    let spin = attitude.inverse().rotate(particle.spin);
+    let (attitude, spin) = Rotation::new(body.top, attitude, spin).at(time);
+    particle.attitude = attitude * body.axes.inverse();
+    particle.spin = attitude.rotate(spin);
+}
+
+/// Takes the mean velocity off, and scales velocities and the parts of ω to the energies of the temperatures.
+fn settle(particles: &mut [Particle], kind: &Species<'_>) {
+    let count = particles.len() as f64;
+    let body = kind.body;
+    let mean = particles
+        .iter()
+        .fold(Vector::default(), |sum, p| sum + p.velocity)
+        / count;
+    let mut square = 0.0;
+    let mut turning = [0.0; 3];
+    for p in particles.iter_mut() {
+        p.velocity = p.velocity - mean;
+        square += p.velocity.dot(p.velocity);
+        let own = (p.attitude * body.axes).inverse().rotate(p.spin).parts();
+        for (sum, part) in turning.iter_mut().zip(own) {
+            *sum += part * part;
+        }
+    }
+    let wanted = 3.0 * count * kind.translational * body.inverse_mass;
+    let scale = (wanted / square).sqrt();
+    let scales: [f64; 3] = std::array::from_fn(|i| {
+        let wanted = count * kind.rotational[i] * body.inverse_moments[i];
+        if turning[i] > 0.0 {
+            (wanted / turning[i]).sqrt()
+        } else {
+            0.0
+        }
+    });
+    for p in particles {
+        p.velocity = p.velocity * scale;
+        let axes = p.attitude * body.axes;
+        let [x, y, z] = axes.inverse().rotate(p.spin).parts();
+        p.spin = axes.rotate(Vector::new(x * scales[0], y * scales[1], z * scales[2]));
+    }
+}

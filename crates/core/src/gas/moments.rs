@@ -1,0 +1,143 @@
+//! What is recorded of a gas: counts since the beginning, and moments of each kind of bodies.
+
+use super::Species;
+use crate::math::{Quaternion, Vector};
+
+/// Columns of a look at a gas: name, unit and text.
+pub const GAS_WHOLE: [(&str, &str, &str); 9] = [
+    ("time", "s", "time"),
+    (
+        "attempts",
+        "1",
+        "pairs that came so near that they could touch",
+    ),
+    ("collisions", "1", "encounters with contact"),
+    ("contacts", "1", "contacts"),
+    ("collapses", "1", "encounters that ended as a collapse"),
+    ("creating", "1", "encounters that created energy"),
+    ("created_energy", "J", "energy that these created"),
+    ("steps", "1", "times at which pairs were looked at"),
+    ("beyond", "1", "candidates faster than the majorant"),
+];
+
+/// Columns of a kind of bodies.
+pub const GAS_KIND: [(&str, &str, &str); 12] = [
+    ("speed_squared", "m2 s-2", "⟨v²⟩"),
+    ("speed_fourth", "m4 s-4", "⟨v⁴⟩"),
+    (
+        "rotational_x",
+        "J",
+        "mean energy of rotation about the first principal axis",
+    ),
+    ("rotational_y", "J", "about the second"),
+    ("rotational_z", "J", "about the third"),
+    (
+        "rotational_squared",
+        "J2",
+        "mean square of the energy of rotation",
+    ),
+    (
+        "mixed",
+        "J m2 s-2",
+        "mean of v² times the energy of rotation",
+    ),
+    (
+        "cos2_velocity_spin",
+        "1",
+        "⟨cos²⟩ of the angle between v and ω",
+    ),
+    (
+        "cos2_velocity_axis",
+        "1",
+        "⟨cos²⟩ of the angle between v and the third axis of the body",
+    ),
+    ("momentum_x", "m s-1", "mean velocity along x"),
+    ("momentum_y", "m s-1", "mean velocity along y"),
+    ("momentum_z", "m s-1", "mean velocity along z"),
+];
+
+/// Counts since the beginning.
+#[derive(Debug, Default)]
+pub struct Whole {
+    pub attempts: f64,
+    pub collisions: f64,
+    pub contacts: f64,
+    pub collapses: f64,
+    pub creating: f64,
+    pub created: f64,
+    pub steps: f64,
+    pub beyond: f64,
+}
+
+impl Whole {
+    /// [`GAS_WHOLE`].
+    pub fn row(&self, time: f64) -> [f64; GAS_WHOLE.len()] {
+        [
+            time,
+            self.attempts,
+            self.collisions,
+            self.contacts,
+            self.collapses,
+            self.creating,
+            self.created,
+            self.steps,
+            self.beyond,
+        ]
+    }
+}
+
+/// Sums over the bodies of a kind.
+#[derive(Debug, Default)]
+pub struct SpeciesSums([f64; GAS_KIND.len()]);
+
+impl SpeciesSums {
+    /// Adds a body.
+    pub fn add(
+        &mut self,
+        kind: &Species<'_>,
+        velocity: Vector,
+        attitude: Quaternion,
+        spin: Vector,
+    ) {
+        let body = kind.body;
+        let axes = attitude * body.axes;
+        let own = axes.inverse().rotate(spin).parts();
+        let moments = body.moments();
+        let [x, y, z] = [0, 1, 2].map(|i| 0.5 * moments[i] * own[i] * own[i]);
+        let part = |(energy, turned)| if turned { energy } else { 0.0 };
+        let turning: f64 = [x, y, z].into_iter().zip(kind.turned).map(part).sum();
+        let square = velocity.dot(velocity);
+        let cosine = |other: Vector| {
+            let size = square * other.dot(other);
+            let along = velocity.dot(other);
+            if size > 0.0 {
+                along * along / size
+            } else {
+                0.0
+            }
+        };
+        let axis = attitude.rotate(Vector::new(0.0, 0.0, 1.0));
+        let row = [
+            square,
+            square * square,
+            x,
+            y,
+            z,
+            turning * turning,
+            square * turning,
+            cosine(spin),
+            cosine(axis),
+            velocity.x,
+            velocity.y,
+            velocity.z,
+        ];
+        for (sum, value) in self.0.iter_mut().zip(row) {
+            *sum += value;
+        }
+    }
+
+    /// [`GAS_KIND`], the means over so many bodies.
+    pub fn row(&self, count: f64) -> [f64; GAS_KIND.len()] {
+        self.0.map(|sum| sum / count)
+    }
+}

@@ -1,0 +1,81 @@
+//! A gas that cools.
+
+use crate::bodies::Dropped;
+use crate::errors::python_error;
+use crate::laws::Law;
+use crate::{resources, watch};
+use numpy::{IntoPyArray, PyArray3, PyArrayMethods};
+use pyo3::prelude::*;
+use restitution_core::gas::{GAS_KIND, GAS_WHOLE, Gas, Phase, Species};
+use restitution_core::pair::Partner;
+
+/// How the gas is followed.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct Course {
+    number_density: f64,
+    uniform: bool,
+    batches: usize,
+    collisions: f64,
+    samples: usize,
+    seed: u64,
+}
+
+/// A body, how many there are, their temperatures of translation and of rotation about each principal axis, and whether contacts turn them about it.
+type Counted<'py> = (Dropped<'py>, usize, f64, [f64; 3], [bool; 3]);
+
+/// Follows a gas. Returns rows of `GAS_WHOLE` and,
+/// for each kind, `GAS_KIND`, by batch and look, and the `KeyboardInterrupt` that cut the run short, if any.
+#[pyfunction]
+fn cool<'py>(
+    py: Python<'py>,
+    kinds: Vec<Counted<'py>>,
+    law: &Law,
+    course: Course,
+    threads: usize,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<(Bound<'py, PyArray3<f64>>, Option<PyErr>)> {
+    let of = |(body, ..): &Counted<'_>| Partner::new("body", body.body());
+    let bodies: Vec<Partner> = kinds
+        .iter()
+        .map(of)
+        .collect::<Result<_, _>>()
+        .map_err(python_error)?;
+    let gas = Gas {
+        kinds: kinds
+            .iter()
+            .zip(&bodies)
+            .map(
+                |(&(_, particles, translational, rotational, turned), body)| Species {
+                    body,
+                    particles,
+                    translational,
+                    rotational,
+                    turned,
+                },
+            )
+            .collect(),
+        density: course.number_density,
+        phase: if course.uniform {
+            Phase::Uniform
+        } else {
+            Phase::Time
+        },
+        batches: course.batches,
+        collisions: course.collisions,
+        samples: course.samples,
+        seed: course.seed,
+    };
+    let (law, resources) = (law.law(), resources(threads)?);
+    let (rows, interrupted) =
+        watch::run(py, progress, |monitor| gas.cool(&law, resources, monitor))?;
+    let width = GAS_WHOLE.len() + bodies.len() * GAS_KIND.len();
+    let shape = [course.batches, course.samples + 1, width];
+    Ok((rows.into_pyarray(py).reshape(shape)?, interrupted))
+}
+
+pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("GAS_WHOLE", GAS_WHOLE.map(|(name, ..)| name))?;
+    module.add("GAS_KIND", GAS_KIND.map(|(name, ..)| name))?;
+    module.add_function(wrap_pyfunction!(cool, module)?)
+}

@@ -1,0 +1,307 @@
+"""A dilute gas that cools, every encounter followed exactly."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from typing import Any, Literal, NamedTuple, get_args
+
+import numpy as np
+import xarray as xr
+
+from restitution import _core
+from restitution._internal.arrays import FloatArray, positive, real, whole
+from restitution._internal.parameters import ParameterError, wrong
+from restitution._internal.resources import check_memory, checked_threads, progress_bar
+from restitution.bodies import AnyBody, Body
+from restitution.laws import CollisionLaw, Frictionless
+
+Phase = Literal["time", "uniform"]
+
+_PARTICLE = 88
+"""Bytes."""
+_WARM = "a finite number >= 0 (J)"
+
+
+class GasWarning(UserWarning):
+    """Encounters of a gas created energy, or ended as a collapse.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import restitution as rs
+    >>> body, law = rs.Dumbbell(radius=1e-3, separation=1e-3), rs.TangentialRestitution(normal=0.95)
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     data = rs.gas.cool(body, law, particles=200, collisions=5, translational_temperature=1e-9)
+    >>> caught[0].category is rs.gas.GasWarning
+    True
+    """
+
+
+class _Kind(NamedTuple):
+    body: AnyBody
+    particles: int
+    translational: float
+    rotational: tuple[float, float, float]
+    turned: tuple[bool, bool, bool]
+    """Whether contacts turn it about each principal axis."""
+
+
+def cool(
+    body: AnyBody | Sequence[AnyBody],
+    law: CollisionLaw,
+    *,
+    particles: int | Sequence[int] = 100_000,
+    collisions: float = 50.0,
+    translational_temperature: float | Sequence[float],
+    rotational_temperature: float | Sequence[float] | None = None,
+    spin_temperature: float | Sequence[float] | None = None,
+    number_density: float = 1.0,
+    phase: Phase = "time",
+    samples: int = 50,
+    batches: int = 10,
+    seed: int = 1,
+    threads: int | None = None,
+    progress: bool = False,
+) -> xr.Dataset:
+    """Follow a homogeneous gas of bodies that collide with each other, without gravity.
+
+    Direct simulation Monte Carlo: any two particles may meet, on lines that are uniform on the disc of their
+    reaches, as often as their relative speed says; each encounter is then followed to its end, with all of
+    its contacts, as `restitution.pair.encounters` does. So the rate of collisions is counted, not assumed. It
+    is the gas in the limit of low density, n(2S)³ << 1 with S the reach of a body: encounters take no time
+    beside the flights between them, and particles that meet have not met before (molecular chaos). Between
+    encounters bodies turn freely, at rates and about axes that they keep.
+
+    Parameters
+    ----------
+    body : Dumbbell or another body, or a sequence of them
+        The particles; of a mixture each of its species.
+    law : Frictionless or another law
+        The collision law, of every contact.
+    particles : int or sequence of int
+        How many there are, of each species; at least 2 for each of the batches.
+    collisions : float
+        Encounters with contact that a particle has had at the end, on average.
+    translational_temperature : float or sequence of float
+        T_tr at the beginning, in J, of each species: the mean energy of translation is 3T_tr/2.
+    rotational_temperature : float or sequence of float, optional
+        T_rot in J: T_rot/2 is the mean energy of rotation about each principal axis; T_tr if left out.
+    spin_temperature : float or sequence of float, optional
+        Of the rotation about the axis of bodies of revolution, which contacts without friction do not change;
+        T_rot if left out.
+    number_density : float
+        Particles per volume, in 1/m³. Times go with its inverse, and nothing else depends on it.
+    phase : {"time", "uniform"}
+        Bodies turn between encounters for the time that passes, or so far that the phase of their rotation is
+        uniform, as in the limit of low density.
+    samples : int
+        How often the gas is looked at, after equal numbers of collisions.
+    batches : int
+        Independent gases over which the particles are spread; standard errors are those of their means.
+    seed : int
+        Of the random numbers, in [0, 2⁶⁴). The same seed gives the same bits with any number of threads.
+    threads : int, optional
+        At most one for each batch; one for each core if left out.
+    progress : bool
+        Show a progress bar on standard error.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time``, of a mixture also ``species``: ``translational_temperature`` and
+        ``rotational_temperature`` (2<E_rot>/f over the f axes about which contacts turn the body: all three,
+        but for that of a body of revolution without friction), in J;
+        ``axis_temperature`` by ``axis``, about each principal axis; ``a20`` = 4<E_tr²>/15T_tr² - 1, ``a02`` =
+        4<E_rot²>/f(f + 2)T_rot² - 1 and ``a11`` = <E_tr E_rot>/<E_tr><E_rot> - 1; ``cos2_velocity_spin`` and
+        ``cos2_velocity_axis``, 1/3 where directions are independent, the axis being z of the body. Over
+        ``time`` alone, since the beginning: ``collisions`` and ``contacts`` of a particle, ``attempts``
+        (pairs that came within reach) and ``created_energy`` a particle, in J. Each has a standard error
+        ``..._error``. Attributes have the parameters, the share of collisions that created energy and of
+        those that ended as a collapse.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its value and what is allowed.
+
+    Warns
+    -----
+    GasWarning
+        If collisions created energy, or more than a hundredth ended as a collapse.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body, law = rs.Dumbbell(radius=1e-3, separation=1e-3), rs.Frictionless(normal=0.9)
+    >>> data = rs.gas.cool(body, law, particles=2000, collisions=20, translational_temperature=1e-9)
+    >>> bool(data["translational_temperature"][-1] < 0.5e-9)
+    True
+    """
+    kinds = _kinds(body, law, particles, translational_temperature, rotational_temperature, spin_temperature)
+    if not isinstance(law, CollisionLaw):
+        raise ParameterError(wrong("law", law, "a collision law"))
+    if not isinstance(phase, str) or phase not in get_args(Phase):
+        raise ParameterError(wrong("phase", phase, "'time' or 'uniform'"))
+    course: dict[str, Any] = {
+        "number_density": positive("number_density", number_density, "m-3"),
+        "uniform": phase == "uniform",
+        "batches": whole("batches", batches, 2, 10**4),
+        "collisions": real("collisions", collisions, "a number in (0, 10⁹]", lambda x: 0.0 < x <= 1e9),
+        "samples": whole("samples", samples, 1, 10**6),
+        "seed": whole("seed", seed, 0, 2**64 - 1),
+    }
+    for kind in kinds:
+        if kind.particles < 2 * batches:
+            raise ParameterError(wrong("particles", kind.particles, f">= {2 * batches}, 2 for each batch"))
+    total = sum(kind.particles // batches * batches for kind in kinds)
+    check_memory(total, _PARTICLE)
+    rows = [(kind.body.compiled, *kind[1:]) for kind in kinds]
+    expected = round(course["collisions"] * total / 2)
+    with progress_bar("gas", expected, "collisions", show=progress) as tell:
+        table, interrupted = _core.cool(rows, law.compiled, course, checked_threads(threads), tell)
+    if interrupted:
+        raise interrupted
+    data = _dataset(kinds, table, total)
+    data.attrs |= {"law": str(law), "seed": seed, "phase": phase, "number_density": number_density}
+    data.attrs |= {"batches": batches, "body": ", ".join(str(kind.body) for kind in kinds)}
+    if not isinstance(body, list | tuple):
+        data = data.isel(species=0)
+    _warn(data)
+    return data
+
+
+def _kinds(
+    body: Any, law: Any, particles: Any, translational: Any, rotational: Any, spin: Any
+) -> list[_Kind]:
+    bodies = list(body) if isinstance(body, list | tuple) else [body]
+    if not bodies or not all(isinstance(one, AnyBody) for one in bodies):
+        raise ParameterError(wrong("body", body, "a body, or a sequence of them"))
+
+    def each(name: str, value: Any) -> list[Any]:
+        if not isinstance(body, list | tuple):
+            return [value]
+        if value is None or np.ndim(value) == 0:
+            return [value] * len(bodies)
+        if len(value) != len(bodies):
+            raise ParameterError(wrong(name, value, f"one number, or {len(bodies)}, one for each body"))
+        return list(value)
+
+    counts = [whole("particles", one, 1, 2**40) for one in each("particles", particles)]
+    warm = [
+        positive("translational_temperature", t, "J")
+        for t in each("translational_temperature", translational)
+    ]
+    kinds = []
+    turning = each("rotational_temperature", rotational)
+    spinning = each("spin_temperature", spin)
+    for one, count, t, r, s in zip(bodies, counts, warm, turning, spinning, strict=True):
+        about = t if r is None else _temperature("rotational_temperature", r)
+        if s is not None and not isinstance(one, Body):
+            raise ParameterError(wrong("spin_temperature", s, f"left out: {type(one).__name__} has no axis"))
+        along = about if s is None else _temperature("spin_temperature", s)
+        turned = (True, True, not (isinstance(one, Body) and isinstance(law, Frictionless)))
+        kinds.append(_Kind(one, count, t, (about, about, along), turned))
+    return kinds
+
+
+def _temperature(name: str, value: Any) -> float:
+    return real(name, value, _WARM, lambda t: 0.0 <= t < math.inf, unit="J")
+
+
+_MEANS = {
+    "translational_temperature": ("temperature of translation", "J"),
+    "rotational_temperature": ("temperature of rotation", "J"),
+    "axis_temperature": ("temperature of rotation about a principal axis", "J"),
+    "a20": ("4<E_tr²>/15T_tr² - 1", "1"),
+    "a02": ("4<E_rot²>/f(f + 2)T_rot² - 1", "1"),
+    "a11": ("<E_tr E_rot>/<E_tr><E_rot> - 1", "1"),
+    "cos2_velocity_spin": ("<cos²> of the angle between velocity and angular velocity", "1"),
+    "cos2_velocity_axis": ("<cos²> of the angle between velocity and the z axis of the body", "1"),
+}
+_COUNTS = {
+    "collisions": ("encounters with contact, of a particle", "1"),
+    "contacts": ("contacts of a particle", "1"),
+    "attempts": ("pairs within reach of each other, of a particle", "1"),
+    "created_energy": ("energy that the law created, a particle", "J"),
+}
+
+
+def _dataset(kinds: Sequence[_Kind], table: FloatArray, total: int) -> xr.Dataset:
+    batches, whole_width = len(table), len(_core.GAS_WHOLE)
+    counts = {name: table[..., k] for k, name in enumerate(_core.GAS_WHOLE)}
+    each = total / batches
+    variables: dict[str, Any] = {}
+
+    def put(name: str, values: FloatArray, dims: tuple[str, ...], text: str, unit: str) -> None:
+        """Take the mean over batches, the first axis, and its standard error."""
+        error = values.std(axis=0, ddof=1) / math.sqrt(batches)
+        variables[name] = (dims, values.mean(axis=0), {"long_name": text, "units": unit})
+        variables[f"{name}_error"] = (dims, error, {"long_name": f"standard error of {name}", "units": unit})
+
+    for name, (text, unit) in _COUNTS.items():
+        particles = 1.0 if name == "created_energy" else 2.0  # to which each belongs
+        put(name, counts[name] * (particles / each), ("time",), text, unit)
+    parts = []
+    for number, kind in enumerate(kinds):
+        start = whole_width + number * len(_core.GAS_KIND)
+        columns = table[..., start : start + len(_core.GAS_KIND)]
+        parts.append(_of_kind(kind, dict(zip(_core.GAS_KIND, np.moveaxis(columns, -1, 0), strict=True))))
+    for name, (text, unit) in _MEANS.items():
+        values = np.stack([part[name] for part in parts], axis=1)
+        dims = ("species", "time", "axis") if name == "axis_temperature" else ("species", "time")
+        put(name, values, dims, text, unit)
+    time = counts["time"].mean(axis=0)
+    coordinates = {
+        "time": ("time", time, {"long_name": "time", "units": "s"}),
+        "axis": ("axis", ["first", "second", "third"], {"long_name": "principal axis"}),
+    }
+    data = xr.Dataset(variables, coordinates)
+    met, last = counts["collisions"][:, -1].sum(), {name: counts[name][:, -1].sum() for name in counts}
+    data.attrs = {
+        "particles": [kind.particles // batches * batches for kind in kinds],
+        "energy_created_share": float(last["creating"] / met),
+        "collapse_share": float(last["collapses"] / met),
+        "looks_an_attempt": float(last["steps"] / last["attempts"]),
+        "beyond_majorant": int(last["beyond"]),
+    }
+    return data
+
+
+def _of_kind(kind: _Kind, means: dict[str, FloatArray]) -> dict[str, FloatArray]:
+    """Return the variables of a species in every batch, shape (batch, time), or with the axes (..., 3)."""
+    mass, turned = kind.body.mass, np.array(kind.turned)
+    energies = np.stack([means[f"rotational_{axis}"] for axis in "xyz"], axis=-1)
+    translational = mass * means["speed_squared"] / 3.0
+    axes = int(turned.sum())
+    rotation = (energies * turned).sum(axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = {
+            "translational_temperature": translational,
+            "rotational_temperature": 2.0 * rotation / axes,
+            "axis_temperature": 2.0 * energies,
+            "a20": mass**2 * means["speed_fourth"] / (15.0 * translational**2) - 1.0,
+            "a02": means["rotational_squared"] / rotation**2 * (axes / (axes + 2.0)) - 1.0,
+            "a11": means["mixed"] / (means["speed_squared"] * rotation) - 1.0,
+        }
+    return found | {name: means[name] for name in ("cos2_velocity_spin", "cos2_velocity_axis")}
+
+
+def _warn(data: xr.Dataset) -> None:
+    created, collapsed = data.attrs["energy_created_share"], data.attrs["collapse_share"]
+    if created > 0.0:
+        warnings.warn(
+            f"{created:.3g} of the collisions created energy: the law does this, and it heats the gas; "
+            "created_energy has how much",
+            GasWarning,
+            stacklevel=3,
+        )
+    if collapsed > 1e-2:
+        warnings.warn(
+            f"{collapsed:.3g} of the collisions ended as a collapse, in which bodies stay together; they "
+            "go on with the velocities that they had then",
+            GasWarning,
+            stacklevel=3,
+        )

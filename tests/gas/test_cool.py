@@ -1,0 +1,183 @@
+"""A gas beside exact rates of contact, Haff's law, rough spheres and what cannot change."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import restitution as rs
+from restitution.gas import theory
+
+ELASTIC = rs.Frictionless(normal=1.0)
+
+
+def unit(elongation: float) -> rs.Dumbbell:
+    """A dumbbell of mass 1 and radius 1."""
+    body = rs.Dumbbell(radius=1.0, separation=elongation, density=1.0)
+    return rs.Dumbbell(radius=1.0, separation=elongation, density=1.0 / body.mass)
+
+
+def pull(data: xr.Dataset, name: str, expected: float, at: int = -1) -> float:
+    """How many standard errors a value at a time is off."""
+    return float((data[name][at] - expected) / data[f"{name}_error"][at])
+
+
+def rate(data: xr.Dataset, name: str) -> tuple[float, float]:
+    """A count of a particle and second, with its standard error."""
+    time = float(data["time"][-1])
+    return float(data[name][-1]) / time, float(data[f"{name}_error"][-1]) / time
+
+
+# Encounters with contact, and contacts each, of a program in C++ that follows pairs: R = m = T = n = 1.
+EQUILIBRIUM = {0.0: (71.086127 / np.sqrt(2 * np.pi), 1.0), 0.1: (29.8299, 1.00047), 1.0: (45.341, 1.0690)}
+
+
+@pytest.mark.parametrize("elongation", EQUILIBRIUM)
+def test_equilibrium(elongation: float) -> None:
+    """Elastic bodies at one temperature keep it, and touch as often as the exact integral says."""
+    body = unit(elongation)
+    data = rs.gas.cool(
+        body, ELASTIC, particles=20_000, collisions=10, translational_temperature=1.0, seed=5, batches=20
+    )
+    encounters, contacts_each = EQUILIBRIUM[elongation]
+    found, error = rate(data, "collisions")
+    # The number of collisions is given; the time until then scatters.
+    error = found * float(np.sqrt(2 / (20_000 * 10)))
+    assert abs(found - encounters) < 4 * error + 1e-4 * encounters
+    each = float(data["contacts"][-1] / data["collisions"][-1])
+    assert abs(each - contacts_each) < 5 * np.sqrt(max(contacts_each - 1, 1e-12) / 1e5) + 1e-5
+    exact = theory.rates(body, ELASTIC, translational_temperature=1.0, rotational_temperature=1.0).contacts
+    assert rate(data, "contacts")[0] == pytest.approx(exact, rel=0.015)
+    if elongation:
+        assert abs(pull(data, "translational_temperature", 1.0)) < 4.5
+        assert abs(pull(data, "rotational_temperature", 1.0)) < 4.5
+    assert abs(pull(data, "a20", 0.0)) < 4.5
+    assert data.attrs["beyond_majorant"] == 0
+
+
+def test_spheres_cool_by_haffs_law() -> None:
+    """With the second Sonine coefficient of van Noije and Ernst, by which they collide less often."""
+    normal = 0.9
+    law = rs.Frictionless(normal=normal)
+    data = rs.gas.cool(
+        unit(0.0), law, particles=40_000, collisions=40, translational_temperature=1.0, batches=10
+    )
+    a2 = 16 * (1 - normal) * (1 - 2 * normal**2) / (81 - 17 * normal + 30 * normal**2 * (1 - normal))
+    tau = theory.haff_time(unit(0.0), law, translational_temperature=1.0) / (1 + 3 * a2 / 16)
+    half = len(data["time"]) // 2
+    expected = (1 + data["time"] / tau) ** -2
+    assert float(data["translational_temperature"][half] / expected[half]) == pytest.approx(1.0, abs=0.01)
+    late = data["a20"][half:]
+    assert float(late.mean()) == pytest.approx(a2, abs=0.006)
+
+
+@pytest.mark.parametrize(("normal", "beta"), [(0.9, 0.5), (0.9, -0.5)])
+def test_rough_spheres(normal: float, beta: float) -> None:
+    """The ratio of the temperatures: that of Maxwellians, which is off by some hundredths."""
+    law = rs.TangentialRestitution(normal=normal, tangential=-beta)
+    data = rs.gas.cool(unit(0.0), law, particles=20_000, collisions=80, translational_temperature=1.0)
+    ratio = float(data["rotational_temperature"][-1] / data["translational_temperature"][-1])
+    assert ratio == pytest.approx(theory.steady_ratio(unit(0.0), law), rel=0.08)
+
+
+def test_contacts_of_one_encounter_are_not_independent() -> None:
+    """Dumbbells L/R = 2, T_rot = 2T_tr: molecular chaos gives dE_rot/dt = -38.485, encounters about -25."""
+    body = unit(2.0)
+    chaos = theory.rates(body, ELASTIC, translational_temperature=1.0, rotational_temperature=2.0)
+    data = rs.gas.cool(
+        body,
+        ELASTIC,
+        particles=200_000,
+        collisions=0.05,
+        samples=1,
+        translational_temperature=1.0,
+        rotational_temperature=2.0,
+        spin_temperature=1.0,
+    )
+    slope = float(data["rotational_temperature"][1] - 2.0) / float(data["time"][1])
+    assert chaos.rotational == pytest.approx(-38.485, rel=1e-4)
+    assert -29.0 < slope < -21.0
+
+
+def test_phase_of_the_rotation() -> None:
+    """By the time between encounters, or uniform: the same, as axes do not remember for so long."""
+    body, law = unit(1.0), rs.Frictionless(normal=0.8)
+    both = [
+        rs.gas.cool(body, law, particles=20_000, collisions=15, translational_temperature=1.0, phase=phase)
+        for phase in ("time", "uniform")
+    ]
+    for name in ("translational_temperature", "rotational_temperature"):
+        one, two = (data[name][-1] for data in both)
+        error = math.hypot(*(float(data[f"{name}_error"][-1]) for data in both))
+        assert abs(float(one - two)) < 5 * error
+
+
+def test_what_cannot_change() -> None:
+    """The energy falls at every look, and without friction the spin about the axis is what it was."""
+    body, law = rs.Spherocylinder(radius=1e-3, separation=2e-3), rs.Frictionless(normal=0.9)
+    data = rs.gas.cool(body, law, particles=2000, collisions=10, translational_temperature=1e-9, batches=4)
+    energy = 1.5 * data["translational_temperature"] + data["rotational_temperature"]
+    assert bool((np.diff(energy) < 0.0).all())
+    along = data["axis_temperature"].isel(axis=2)
+    np.testing.assert_allclose(along, along[0], rtol=1e-12)
+    assert data.attrs["energy_created_share"] == 0.0
+
+
+def test_the_same_bits_on_any_number_of_threads() -> None:
+    body, law = rs.Clump(spheres=[(0, 0, 0, 1e-3), (1e-3, 0, 0, 8e-4)]), rs.Coulomb(normal=0.9, friction=0.3)
+    one, two = (
+        rs.gas.cool(body, law, particles=400, collisions=5, translational_temperature=1e-9, threads=threads)
+        for threads in (1, 2)
+    )
+    xr.testing.assert_identical(one, two)
+
+
+def test_a_mixture() -> None:
+    """Rods in spheres: at one temperature nothing changes, and species have variables of their own."""
+    data = rs.gas.cool(
+        [rs.Spherocylinder(radius=1e-3, separation=4e-3), rs.Dumbbell(radius=2e-3, separation=0.0)],
+        ELASTIC,
+        particles=[8000, 4000],
+        collisions=10,
+        translational_temperature=1e-9,
+    )
+    assert data["translational_temperature"].dims == ("species", "time")
+    for species in (0, 1):
+        assert abs(pull(data.isel(species=species), "translational_temperature", 1e-9)) < 4.5
+
+
+def test_laws_that_create_energy_heat_the_gas() -> None:
+    law = rs.TangentialRestitution(normal=0.95, tangential=1.0)
+    with pytest.warns(rs.gas.GasWarning, match="created energy"):
+        data = rs.gas.cool(unit(1.0), law, particles=2000, collisions=10, translational_temperature=1.0)
+    assert float(data["created_energy"][-1]) > 0.0
+
+
+REFUSED: dict[str, dict[str, Any]] = {
+    "particles": {"particles": 10},
+    "collisions": {"collisions": 0.0},
+    "translational_temperature": {"translational_temperature": -1.0},
+    "rotational_temperature": {"rotational_temperature": np.nan},
+    "spin_temperature": {"spin_temperature": -1.0},
+    "number_density": {"number_density": 0.0},
+    "phase": {"phase": "none"},
+    "samples": {"samples": 0},
+    "batches": {"batches": 1},
+    "seed": {"seed": -1},
+    "law": {"law": 0.9},
+    "body": {"body": "rod"},
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_refused_by_name(name: str) -> None:
+    usual: dict[str, Any] = {"body": unit(1.0), "law": ELASTIC, "translational_temperature": 1.0}
+    with pytest.raises(ValueError, match=f"^{name}"):
+        rs.gas.cool(**usual | REFUSED[name])
+
+
+def test_bodies_that_are_not_their_hull_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"^body"):
+        rs.gas.cool(rs.Ring(outer=3e-3, inner=1e-3, height=1e-3), ELASTIC, translational_temperature=1.0)
