@@ -182,7 +182,7 @@ impl CappedSphere {
     }
 
     /// The free arcs of a circle of latitude, if any cap covers a part of it.
-    fn arcs(&self, height: f64) -> Option<Vec<Arc>> {
+    fn arcs(&self, height: f64) -> Option<Vec<FreeArc>> {
         let level = (1.0 - height * height).max(0.0).sqrt();
         let mut covered = Vec::new();
         for (number, cap) in self.caps.iter().enumerate() {
@@ -205,7 +205,7 @@ impl CappedSphere {
                 let ends = [last, number];
                 let [from, to] = self.ends(ends, height, level);
                 let turns = ((begin - at - (to - from)) / (2.0 * PI)).round();
-                arcs.push(Arc { ends, turns });
+                arcs.push(FreeArc { ends, turns });
             }
             if end > at {
                 (at, last) = (end, number);
@@ -323,7 +323,7 @@ fn product(a: Vector, b: Vector) -> f64 {
 
 /// A free arc of circles of latitude: from the end of one cap to the beginning of another, and the turns from the azimuth of the
 /// one to that of the other.
-struct Arc {
+struct FreeArc {
     ends: [usize; 2],
     turns: f64,
 }
@@ -333,7 +333,7 @@ struct Zone<'a> {
     sphere: &'a CappedSphere,
     middle: f64,
     half: f64,
-    arcs: Option<Vec<Arc>>,
+    arcs: Option<Vec<FreeArc>>,
 }
 
 impl Zone<'_> {
