@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from restitution import _core
 
 if TYPE_CHECKING:
-    from restitution import analytic, figures, fit, gas, study
+    from restitution import analytic, figures, fit, gas, pair, study
     from restitution._core import NumericalError, build_info
     from restitution.bodies import *  # noqa: F403
     from restitution.distribution import DistanceWarning, FluctuatingRestitution
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from restitution.experiment.inference import posterior
     from restitution.explorer import explore
     from restitution.laws import *  # noqa: F403
+    from restitution.pair import Plane
     from restitution.study import sweep
 
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "LoadedSphere",
     "Mesh",
     "NumericalError",
+    "Plane",
     "Plastic",
     "PullWarning",
     "RandomHeight",
@@ -80,6 +82,7 @@ __all__ = [
     "flight",
     "from_roundness",
     "gas",
+    "pair",
     "posterior",
     "reduce",
     "required_roundness",
@@ -106,6 +109,7 @@ _HOMES = {
     "DistanceWarning": "distribution",
     "FluctuatingRestitution": "distribution",
     "NumericalError": "_core",
+    "Plane": "pair",
     "build_info": "_core",
     "compare": "drop.compare",
     "clusters": "drop.clusters",

@@ -15,6 +15,9 @@ __all__ = [
     "MOST_RADIANS",
     "ORIENTATIONS",
     "PADE",
+    "PAIR_ENCOUNTER",
+    "PAIR_ENDINGS",
+    "PAIR_HIT",
     "PULLS",
     "STOP_REASONS",
     "Counter",
@@ -33,6 +36,7 @@ __all__ = [
     "bytes_per_impact",
     "columns",
     "custom",
+    "encounters",
     "faces",
     "hull",
     "law",
@@ -56,6 +60,9 @@ BODIES: list[dict[str, Any]]
 LAWS: list[dict[str, Any]]
 MATERIALS: list[dict[str, Any]]
 STOP_REASONS: list[str]
+PAIR_ENCOUNTER: list[tuple[str, str, str, int, bool]]
+PAIR_HIT: list[tuple[str, str, str, int, bool]]
+PAIR_ENDINGS: list[str]
 
 MOST_FRICTION: float
 PADE: tuple[list[float], list[float]]
@@ -266,3 +273,13 @@ def statistics(
     parts: Sequence[tuple[int, int]],
 ) -> tuple[dict[str, npt.NDArray[Any]], list[dict[str, npt.NDArray[Any]]], KeyboardInterrupt | None]: ...
 def build_info() -> dict[str, Any]: ...
+def encounters(
+    body: Solid | Rigid,
+    other: Solid | Rigid | None,
+    law: Law,
+    drawn: Mapping[str, Any],
+    states: npt.NDArray[np.float64] | None,
+    contacts: bool,
+    threads: int,
+    progress: Callable[[int], None] | None,
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], float, KeyboardInterrupt | None]: ...

@@ -10,7 +10,7 @@ import pytest
 import restitution as rs
 
 DOCS = Path(__file__).parents[2] / "docs"
-MODULES = ["analytic", "gas", "gas.theory", "fit", "flight", "sound", "study", "figures"]
+MODULES = ["analytic", "pair", "gas", "gas.theory", "fit", "flight", "sound", "study", "figures"]
 PAGE = (DOCS / "names.md").read_text(encoding="utf-8")
 
 

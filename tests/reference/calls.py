@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import restitution as rs
-from restitution import _core, analytic, bodies, figures, fit, flight, gas, laws
+from restitution import _core, analytic, bodies, figures, fit, flight, gas, laws, pair
 
 Call = tuple[Callable[..., Any], Callable[[], dict[str, Any]]]
 """A public function, class or method, and what it is given; of a method with ``self``."""
@@ -33,6 +33,8 @@ def folder() -> Path:
         *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in TETRAHEDRON),
     ]
     (path / "mesh.obj").write_text("\n".join(rows) + "\n", encoding="ascii")
+    (path / "profile.csv").write_text("0,-3e-3\n2e-3,0\n0,3e-3\n", encoding="ascii")
+    (path / "points.csv").write_text("0,0,0\n4e-3,0,0\n0,4e-3,0\n0,0,4e-3\n", encoding="ascii")
     good()["dist"].save(path / "dist.nc")
     return path
 
@@ -102,6 +104,7 @@ def of(thing: str, /, **others: Any) -> Callable[[], dict[str, Any]]:
 
 
 RUN = {"particles": 3, "impacts": 3}
+BALL, GLASS = rs.Dumbbell(radius=3e-3, separation=0.0), {"young_modulus": 7e10, "poisson_ratio": 0.2}
 SMOOTH, WARM = (
     rs.Frictionless(normal=0.9),
     {"translational_temperature": 1e-9, "rotational_temperature": 1e-9},
@@ -141,6 +144,19 @@ CALLS: dict[str, Call] = {
             "heights": 1e-5,
             "seed": 2,
         },
+    ),
+    "Revolution.from_file": (rs.Revolution.from_file, lambda: {"path": folder() / "profile.csv"}),
+    "ConvexPolyhedron.from_file": (rs.ConvexPolyhedron.from_file, lambda: {"path": folder() / "points.csv"}),
+    "Plane": (rs.Plane, lambda: {}),
+    "pair.encounters": (
+        pair.encounters,
+        some("body", other=BALL, law=SMOOTH, encounters=5, record="contacts", threads=1, **WARM),
+    ),
+    "pair.rates": (pair.rates, some("body", law=SMOOTH, encounters=20, temperature_ratios=[1.0], threads=1)),
+    "flight.ContactTime": (flight.ContactTime, lambda: {"at_1_m_s": 1e-4, "uncertainty": 1e-5}),
+    "flight.ContactTime.of_spheres": (
+        flight.ContactTime.of_spheres,
+        lambda: {"diameter": 6e-3, "mass": 1e-3, "ball": GLASS, "plate": GLASS},
     ),
     "Mesh.from_file": (rs.Mesh.from_file, lambda: {"path": folder() / "mesh.obj", "scale": 1e-3}),
     "CustomLaw": (rs.CustomLaw, lambda: {"function": _own, "name": "own"}),

@@ -41,7 +41,8 @@ RESULTS = {
 }
 """Classes that nobody makes but the functions that return them, or that are bases of others."""
 WORKINGS = {
-    *(f"laws.{name}" for name in ("bound", "coupling", "growth", "measure", "table")),
+    *(f"laws.{name}" for name in ("bound", "coupling", "draw", "growth", "measure", "table")),
+    "flight.ContactTime.possible",
     "bodies.Form",
     "distribution.image",
     "distribution.image_format",
@@ -107,6 +108,7 @@ _AFTER = r"(?= = |: | has | holds | goes | lacks | gave |, \w+(?:: |, )| \* )"
 """What follows the name of an argument, of several, or of an element of it."""
 
 FITTING: dict[str, str] = {
+    "pair.encounters.states": "translational_temperature",
     "gas.cool.spin_temperature": "rotational_temperature",
     "gas.cool.batches": "particles",
     "gas.cool.translational_temperature": "rotational_temperature",

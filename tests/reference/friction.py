@@ -95,14 +95,14 @@ def follow(matrix: Floats, velocity: Floats, restitution: float, friction: float
 
     While the contact slips, the variable is θ with dp = |s| dθ, in which a slip that stops does so at ∞, with
     steps of ordinary length.
-    A contact may be compressed again before it has separated. The restitution then owes its part of all
-    compressions, less what it has given; Newton's asks for the first p with its velocity.
+    A contact may be compressed again before it has separated. The restitution then ends where the work that
+    was taken at most has come back to its part (Stronge's), at (1 + ε_n) times the impulse at the end of the
+    last compression (Poisson's), or at the first p with its velocity (Newton's).
     """
     speed, size = -velocity[0], float(np.linalg.norm(velocity))
     # Contact velocity, impulse, work of the normal force.
     state = np.array([*velocity, 0.0, 0.0, 0.0, 0.0])
-    pressed = taken = 0.0  # impulse, and work done by the contact, of all compressions
-    given = returned = 0.0  # of all restitutions before the last
+    pressed = taken = 0.0  # impulse at the end of the last compression, and most work taken so far
     compressing = True
     held = at_rest(matrix, friction) if np.hypot(*velocity[1:]) <= VANISHED * size else None
 
@@ -144,11 +144,9 @@ def follow(matrix: Floats, velocity: Floats, restitution: float, friction: float
             continue
         state[0] = 0.0
         if compressing:
-            pressed, taken = state[3] - given, returned - state[6]
-            if restitution == 0:
+            pressed, taken = float(state[3]), max(taken, -float(state[6]))
+            if over(0.0, state) >= 0.0:
                 break
-        else:
-            given, returned = state[3] - pressed, state[6] + taken
         compressing = not compressing
     else:
         raise AssertionError("the impact does not end")

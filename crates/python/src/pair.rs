@@ -47,11 +47,12 @@ impl Drawn {
 /// The body and the other one, or a plane if it is none.
 fn partners(body: &Dropped<'_>, other: Option<&Dropped<'_>>) -> PyResult<[Partner; 2]> {
     let of = |name, body: &Dropped<'_>| Partner::new(name, body.body()).map_err(python_error);
+    let body = of("body", body)?;
     let other = match other {
         Some(other) => of("other", other)?,
         None => Partner::plane(),
     };
-    Ok([of("body", body)?, other])
+    Ok([body, other])
 }
 
 type Rows<'py> = Bound<'py, PyArray2<f64>>;

@@ -25,6 +25,8 @@ use crate::shape::{Feature, Piece, PieceKind, Top};
 
 /// Most steps of a search.
 const MOST_STEPS: usize = 1 << 20;
+/// The gap, over the size of a pair, that counts as none.
+const NARROW: f64 = 1e-14;
 /// Most rounds of Newton's method for a normal.
 const ROUNDS: usize = 30;
 const UP: Vector = Vector::new(0.0, 0.0, 1.0);
@@ -280,7 +282,11 @@ impl<'a> PairSearch<'a> {
                             if let Some(left) = left {
                                 (gap.width, gap.rate) = (0.0, left.speed);
                             }
-                            (gap.step(invisible), gap.rate, gap.bound)
+                            (
+                                gap.step(invisible),
+                                gap.rate,
+                                gap.bound + gap.spread / gap.distance,
+                            )
                         }
                         None => self.convex_step(
                             flight,
@@ -313,7 +319,7 @@ impl<'a> PairSearch<'a> {
         Err(())
     }
 
-    /// A certified step of two convex parts, the rate of their gap and 2K.
+    /// A certified step of two convex parts, the rate of their gap, and a bound on |f″| where the gap is not closed.
     #[inline(always)]
     fn convex_step(
         &self,
@@ -408,7 +414,15 @@ impl<'a> PairSearch<'a> {
         } else {
             after
         };
-        (step, rate, 2.0 * curved)
+        // The gap is above F by at most V²s²/2d, d the distance of what touches, which for corners is the gap itself.
+        let bends = if width > NARROW * self.size {
+            let turned: f64 = (0..2).map(|i| flight.bounds[i][0] * reach(i)).sum();
+            let most = flight.velocity.norm() + turned;
+            most * most / width
+        } else {
+            0.0
+        };
+        (step, rate, 2.0 * curved + bends)
     }
 }
 

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from pydantic import Field
 
 from restitution._internal.arrays import real
-from restitution._internal.parameters import Number, Parameters
+from restitution._internal.parameters import Number, ParameterError, Parameters, wrong
 from restitution.experiment.flight.times import LARGEST, LEAST
 
 Array = npt.NDArray[np.float64]
@@ -66,7 +66,7 @@ class ContactTime(Parameters):
         ball, plate : dict
             ``young_modulus`` in Pa and ``poisson_ratio``; a plate that is left out does not give way.
         relative_uncertainty : float
-            Standard error over the value, >= 0.
+            Standard error over the value, in [0, 1].
 
         Raises
         ------
@@ -74,10 +74,14 @@ class ContactTime(Parameters):
             If a value is out of range.
         """
         given = _Ball(diameter=diameter, mass=mass)
+        for name, one in (("ball", ball), ("plate", plate)):
+            if not isinstance(one, dict) and (name == "ball" or one is not None):
+                raise ParameterError(wrong(name, one, "a dict with young_modulus and poisson_ratio"))
+        uncertainty = real("relative_uncertainty", relative_uncertainty, "a number in [0, 1]", _share)
         sides = [_Elastic(**one) for one in (ball, plate) if one is not None]
         softness = sum((1.0 - one.poisson_ratio**2) / one.young_modulus for one in sides)
         time = _hertz(given.mass, given.diameter, 1.0 / softness)
-        return cls(at_1_m_s=time, uncertainty=relative_uncertainty * time)
+        return cls(at_1_m_s=time, uncertainty=uncertainty * time)
 
     @classmethod
     def possible(
@@ -103,6 +107,10 @@ class ContactTime(Parameters):
         stiffness = 4.0 * young * wall**2 / (radius * math.sqrt(3.0 * (1.0 - poisson**2)))
         heavy = mass or 4.0 * math.pi * radius**2 * wall * density
         return cls(at_1_m_s=0.0, uncertainty=math.pi * math.sqrt(heavy / stiffness))
+
+
+def _share(x: float) -> bool:
+    return 0.0 <= x <= 1.0
 
 
 class _Ball(Parameters):

