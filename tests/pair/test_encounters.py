@@ -63,7 +63,7 @@ def round_and_mean(body: Any) -> tuple[float, float]:
     """Area and mean radius of a convex body."""
     match body:
         case rs.Dumbbell():
-            return 4 * np.pi * body.radius**2, body.radius
+            return 4 * np.pi * body.radii[0] ** 2, body.radii[0]
         case rs.Box():
             a, b, c = body.a, body.b, body.c
             return 2 * (a * b + b * c + c * a), (a + b + c) / 4
