@@ -304,7 +304,7 @@ impl<'a> PairSearch<'a> {
                     }
                 }
             }
-            if !(best < until) {
+            if best.is_nan() || best >= until {
                 return Ok(None);
             }
             if let Some((parts, bound)) = found {

@@ -291,6 +291,10 @@ impl Following<'_, '_> {
 
     /// The impact of a contact; returns the speed at which its points leave each other.
     #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the state of an encounter, part by part"
+    )]
     fn collide(
         &mut self,
         search: &PairSearch<'_>,

@@ -671,8 +671,8 @@ impl OngoingImpact<'_> {
             self.slip = [0.0; 2];
             return false;
         }
-        for i in 0..2 {
-            self.slip[i] += (axes.coupling[i] + axes.tangential[i] * pull[i]) * p;
+        for (i, pull) in pull.into_iter().enumerate() {
+            self.slip[i] += (axes.coupling[i] + axes.tangential[i] * pull) * p;
         }
         self.over(if length <= back {
             ImpactSoFar::reached
