@@ -255,6 +255,7 @@ fn turned<'py>(
 
 /// Balls with a given inertia, and asperities on their free surface.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the parameters of a body")]
 fn rough(
     py: Python<'_>,
     spheres: Vec<[f64; 4]>,
