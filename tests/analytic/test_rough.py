@@ -266,7 +266,7 @@ LAWS = [
 @pytest.mark.parametrize(
     ("number", "height", "law", "tangential"),
     # At the large angles of few asperities friction reaches its limit.
-    [(4, 0.3, *law) for law in LAWS[:2]] + [(300, 0.02, *law) for law in LAWS] + [(2000, 0.01, *LAWS[0])],
+    [(4, 0.1, *law) for law in LAWS[:2]] + [(300, 0.02, *law) for law in LAWS] + [(2000, 0.01, *LAWS[0])],
 )
 def test_the_first_impact_of_rough_spheres(
     number: int, height: float, law: Any, tangential: float | None

@@ -154,23 +154,24 @@ def test_lattices_where_edges_meet_in_points() -> None:
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: rs.Clump(spheres=filling(30_000, 2e-3)).mass,
-        lambda: rs.RoughSphere(radius=3e-3, asperities=20_000_000, asperity_radius=1e-6).mass,
+        lambda spheres: rs.Clump(spheres=spheres).mass,
+        lambda _: rs.RoughSphere(radius=3e-3, asperities=20_000_000, asperity_radius=1e-6).mass,
     ],
     ids=["clump", "rough"],
 )
-def test_ctrl_c_ends_what_takes_long(make: Callable[[], float]) -> None:
+def test_ctrl_c_ends_what_takes_long(make: Callable[[Any], float]) -> None:
     """The first would take minutes, the other ten seconds and a gigabyte."""
 
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
+    spheres = filling(30_000, 2e-3)
     before = signal.signal(signal.SIGALRM, stop)
     began = time.process_time()
     try:
-        signal.setitimer(signal.ITIMER_REAL, 0.5)
+        signal.setitimer(signal.ITIMER_REAL, 1.0)
         with pytest.raises(KeyboardInterrupt):
-            make()
+            make(spheres)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)

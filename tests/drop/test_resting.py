@@ -175,6 +175,7 @@ def test_wells_on_a_grid_in_closed_form(body: RigidBody, lowest: float, barrier:
     assert np.max(shape.tree.query(directions)[0]) < np.sqrt(4 * np.pi / shape.tree.n)
 
 
+@pytest.mark.filterwarnings("ignore:spheres.* away from others")
 @pytest.mark.parametrize("body", [GRIDS[0][0], GRIDS[2][0]])
 def test_clumps_and_ellipsoids_stay_where_they_are_decided(body: RigidBody) -> None:
     """The side that is down when one is decided is down at the end; equal sides are equally often."""
@@ -208,6 +209,7 @@ def test_clumps_and_ellipsoids_stay_where_they_are_decided(body: RigidBody) -> N
         GRIDS[0][0],
     ],
 )
+@pytest.mark.filterwarnings("ignore:spheres.* away from others")
 @pytest.mark.parametrize("law", [PLASTIC, rs.Frictionless(normal=0.7)])
 def test_until_settled_the_same_are_decided(body: RigidBody, law: Any) -> None:
     """A run that ends where nothing can change has the same impacts up to there, and the same faces."""

@@ -68,7 +68,8 @@ def test_a_round_ball_gives_an_upper_limit_and_an_egg_a_shape() -> None:
     assert 1e-3 < round_ball.attrs["elongation_upper_limit"] < 0.05
     egg = quick([heard(0.15, law, seed) for seed in (3, 4, 5)], law, scatter=None, roughness=0.0)
     assert egg.attrs["elongation_determined"] == 1
-    assert egg.attrs["verdict"].startswith("The times determine the shape, if ε_n does not scatter: L/R = 0.")
+    # Of these drops one impact is 3 standard deviations off, and is said to be left out.
+    assert "the times determine the shape, if ε_n does not scatter: l/r = 0." in egg.attrs["verdict"].lower()
     assert 0.05 < float(egg["posterior"].to_dataset().elongation.median()) < 0.3
 
 

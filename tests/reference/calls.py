@@ -33,7 +33,7 @@ def folder() -> Path:
         *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in TETRAHEDRON),
     ]
     (path / "mesh.obj").write_text("\n".join(rows) + "\n", encoding="ascii")
-    (path / "profile.csv").write_text("0,-3e-3\n2e-3,0\n0,3e-3\n", encoding="ascii")
+    (path / "profile.csv").write_text("-3e-3,0\n0,2e-3\n3e-3,0\n", encoding="ascii")
     (path / "points.csv").write_text("0,0,0\n4e-3,0,0\n0,4e-3,0\n0,0,4e-3\n", encoding="ascii")
     good()["dist"].save(path / "dist.nc")
     return path

@@ -108,7 +108,14 @@ _AFTER = r"(?= = |: | has | holds | goes | lacks | gave |, \w+(?:: |, )| \* )"
 """What follows the name of an argument, of several, or of an element of it."""
 
 FITTING: dict[str, str] = {
+    "Revolution.from_file.scale": "profile",
+    "ConvexPolyhedron.from_file.scale": "points",
+    "pair.rates.temperature_ratios": "rotational_temperature",
     "pair.encounters.states": "translational_temperature",
+    "pair.encounters.speed": "translational_temperature",
+    "pair.encounters.spin": "rotational_temperature",
+    "flight.ContactTime.of_spheres.ball": "young_modulus poisson_ratio",
+    "flight.ContactTime.of_spheres.plate": "young_modulus poisson_ratio",
     "gas.cool.spin_temperature": "rotational_temperature",
     "gas.cool.batches": "particles",
     "gas.cool.translational_temperature": "rotational_temperature",

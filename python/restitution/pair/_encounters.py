@@ -253,7 +253,7 @@ def encounters(
     >>> float((data.contacts > 0).mean().round(1))
     0.7
     """
-    if record not in get_args(Record):
+    if not isinstance(record, str) or record not in get_args(Record):
         raise ParameterError(wrong("record", record, " or ".join(map(repr, get_args(Record)))))
     number = checked_threads(threads)
     rows = None
