@@ -153,7 +153,7 @@ def test_an_independent_search_finds_the_same_contacts() -> None:
     balls = [(0.6, 0.6, 0.6, 0.8), (0.6, -0.6, -0.6, 0.8), (-0.6, 0.6, -0.6, 0.7), (-0.6, -0.6, 0.6, 0.5)]
     clump, bar = rs.Clump(spheres=balls, density=0.1, inertia="sum"), dumbbell(1.0)
     law = rs.Frictionless(normal=0.8)
-    data = drawn(clump, bar, law, encounters=20, record="contacts")
+    data = drawn(clump, bar, law, encounters=40, record="contacts")
     compiled = clump.compiled
     w, x, y, z = compiled.principal_axes
     axes = Rotation.from_quat([x, y, z, w])
