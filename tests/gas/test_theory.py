@@ -7,6 +7,7 @@ import pytest
 from scipy.stats import qmc
 
 import restitution as rs
+from reference.convex import area_and_mean_radius
 from restitution.bodies import AnyBody
 from restitution.gas import theory
 from restitution.gas.theory._surface import surface
@@ -45,23 +46,12 @@ def test_contacts_in_equilibrium(name: str) -> None:
     assert unit(body) == pytest.approx(expected, rel=1e-9)
 
 
-def minkowski(body: rs.Spherocylinder | rs.Spheroid) -> tuple[float, float]:
-    """Area and mean radius of a body of revolution."""
-    if isinstance(body, rs.Spherocylinder):
-        length, radius = body.separation, body.radius
-        return 4 * np.pi * radius**2 + 2 * np.pi * radius * length, radius + length / 4
-    a, c = body.equatorial, body.polar
-    e = np.sqrt(1 - (a / c) ** 2)
-    area = 2 * np.pi * a**2 * (1 + c / (a * e) * np.arcsin(e))
-    return area, 0.5 * c + 0.5 * a * a / (c * e) * np.arctanh(e)
-
-
 @pytest.mark.parametrize(
     "body", [rs.Spherocylinder(radius=1.0, separation=3.0), rs.Spheroid(equatorial=1.0, polar=2.5)]
 )
 def test_area_of_contact_of_convex_bodies(body: Any) -> None:
     """The kinematic formula for the surface of the sum of two convex bodies, 2S + 8πR²."""
-    area, radius = minkowski(body)
+    area, radius = area_and_mean_radius(body)
     assert surface(body, 24).area.sum() == pytest.approx(2 * area + 8 * np.pi * radius**2, rel=1e-9)
 
 

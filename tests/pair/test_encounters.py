@@ -12,6 +12,7 @@ from scipy.integrate import quad
 from scipy.spatial.transform import Rotation
 
 import restitution as rs
+from reference.convex import area_and_mean_radius
 
 sys.path.insert(0, str(Path(__file__).parent))
 import oracle
@@ -59,28 +60,6 @@ def test_contacts_of_spheroids_in_equilibrium() -> None:
     assert abs(found - 157.0410992) < 4 * error
 
 
-def round_and_mean(body: Any) -> tuple[float, float]:
-    """Area and mean radius of a convex body."""
-    match body:
-        case rs.Dumbbell():
-            return 4 * np.pi * body.radii[0] ** 2, body.radii[0]
-        case rs.Box():
-            a, b, c = body.a, body.b, body.c
-            return 2 * (a * b + b * c + c * a), (a + b + c) / 4
-        case rs.Spherocylinder():
-            length, radius = body.separation, body.radius
-            return 4 * np.pi * radius**2 + 2 * np.pi * radius * length, radius + length / 4
-        case rs.Cylinder():
-            return 2 * np.pi * body.radius * (body.radius + body.height), (
-                body.height + np.pi * body.radius
-            ) / 4
-    a, c = body.equatorial, body.polar
-    e = np.sqrt(1 - (a / c) ** 2)
-    return 2 * np.pi * a**2 * (1 + c / (a * e) * np.arcsin(e)), 0.5 * c + 0.5 * a * a / (c * e) * np.arctanh(
-        e
-    )
-
-
 FROZEN = (
     rs.Dumbbell(radius=1.0, separation=0.0),
     rs.Spherocylinder(radius=0.5, separation=2.0),
@@ -98,7 +77,7 @@ FROZEN = (
 def test_frozen_bodies_have_the_cross_section_of_convex_ones(body: Any, other: Any) -> None:
     """(S_A + S_B)/4 + 2π R_A R_B, R the mean radius, of bodies that do not turn."""
     data = rs.pair.encounters(body, other, ELASTIC, spin=(0.0, 0.0, 0.0), speed=1.0, encounters=4000, seed=5)
-    (area, radius), (more, wider) = round_and_mean(body), round_and_mean(other)
+    (area, radius), (more, wider) = area_and_mean_radius(body), area_and_mean_radius(other)
     exact = (area + more) / 4 + 2 * np.pi * radius * wider
     hit = (data.contacts > 0).to_numpy()
     found, error = data.attrs["attempt_rate"] * np.array([hit.mean(), hit.std() / np.sqrt(hit.size)])

@@ -9,8 +9,8 @@ import xarray as xr
 from restitution import _core
 from restitution._internal.arrays import check_each, positive, reals, whole
 from restitution._internal.resources import checked_threads
-from restitution.bodies import AnyBody
-from restitution.laws import CollisionLaw
+from restitution.bodies import AnyBody, Body, Dumbbell, LoadedSphere
+from restitution.laws import CollisionLaw, Frictionless
 from restitution.pair._encounters import COLLAPSE, Pairs
 
 _CHUNK = 1 << 16
@@ -161,9 +161,6 @@ def _of(
 
 def degrees_of_freedom(body: AnyBody, law: CollisionLaw) -> int:
     """Return the number of axes about which contacts can turn a body."""
-    from restitution.bodies import Body, Dumbbell, LoadedSphere
-    from restitution.laws import Frictionless
-
     if not isinstance(law, Frictionless) or not isinstance(body, Body):
         return 3
     round_body = isinstance(body, Dumbbell) and body.separation == 0.0

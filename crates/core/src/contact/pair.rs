@@ -576,18 +576,7 @@ fn freely(
     };
     let mut now = value(n);
     for _ in 0..ROUNDS {
-        let first = match tie {
-            Some(tie) => tie / tie.norm(),
-            None => {
-                let aside = if n.x.abs() < 0.6 {
-                    Vector::new(1.0, 0.0, 0.0)
-                } else {
-                    Vector::new(0.0, 1.0, 0.0)
-                };
-                let across = n.cross(aside);
-                across / across.norm()
-            }
-        };
+        let first = tie.map_or_else(|| n.across(), |tie| tie / tie.norm());
         let second = n.cross(first);
         // Slope along both, and curvature: radii of curvature, and the gap, as n stays a unit vector.
         let mut slope = [first.dot(between), second.dot(between)];

@@ -2,7 +2,7 @@
 //!
 //! N particles fill a volume V = N/n without order: places are not kept, and any two of them may meet. Two with the relative velocity **u** come
 //! through the sphere of radius S, the sum of their reaches, at the rate πS²u/V. So candidates are drawn, each two particles alike, at the rate of the
-//! largest S and of a majorant c of u, and one is followed as an [`encounter`] with the probability S²u over that of the majorant, on a line that is
+//! largest S and of a majorant c of u, and one is followed as an encounter with the probability S²u over that of the majorant, on a line that is
 //! uniform on the disc. This is M. Kac's process, without a step of time (G. A. Bird, *Molecular Gas Dynamics* (1994), Sec. 11.1, without cells). Between
 //! encounters a body turns freely for the time that has passed, or for one so long that its phase is uniform, as in the limit n → 0.
 
@@ -101,8 +101,7 @@ impl Gas<'_> {
     ) -> Result<Vec<f64>, Error> {
         self.check()?;
         let next = AtomicUsize::new(0);
-        let width = GAS_WHOLE.len() + self.kinds.len() * GAS_KIND.len();
-        let size = (self.samples + 1) * width;
+        let size = (self.samples + 1) * (GAS_WHOLE.len() + self.kinds.len() * GAS_KIND.len());
         let rows = Mutex::new(memory::zeros("looks at a gas", size * self.batches)?);
         let work = |_| {
             loop {
@@ -187,14 +186,10 @@ impl<'a> Batch<'a> {
                 let attitude = draws.attitude();
                 let [x, y, z] = draws.normals();
                 let thermal = (kind.translational * body.inverse_mass).sqrt();
-                let turns = draws.normals();
-                let [a, b, c] = std::array::from_fn(|i| {
-                    turns[i] * (kind.rotational[i] * body.inverse_moments[i]).sqrt()
-                });
                 particles.push(Particle {
                     velocity: Vector::new(x, y, z) * thermal,
                     attitude,
-                    spin: (attitude * body.axes).rotate(Vector::new(a, b, c)),
+                    spin: draws.spin(body, attitude, kind.rotational),
                     time: 0.0,
                 });
             }
@@ -243,9 +238,8 @@ impl<'a> Batch<'a> {
         self.look(&mut rows);
         let mut fastest = 0.0;
         let mut since = count;
-        let mut finished = 0;
-        while rows.len() < (gas.samples + 1) * (GAS_WHOLE.len() + gas.kinds.len() * GAS_KIND.len())
-        {
+        let (mut looks, mut finished) = (1, 0);
+        while looks <= gas.samples {
             if since == count {
                 let square = |p: &Particle| p.velocity.dot(p.velocity);
                 fastest = 2.0 * ROOM * self.particles.iter().map(square).fold(0.0, f64::max).sqrt();
@@ -273,14 +267,12 @@ impl<'a> Batch<'a> {
                 continue;
             }
             self.meet(law, level, [i, j], bodies, u / speed, both)?;
-            while self.whole.collisions >= each * (rows_of(gas, rows.len()) as f64) {
+            while looks <= gas.samples && self.whole.collisions >= each * looks as f64 {
                 self.look(&mut rows);
+                looks += 1;
                 let done = self.whole.collisions as u64;
                 monitor.add_finished(done - finished);
                 finished = done;
-                if rows_of(gas, rows.len()) > gas.samples {
-                    break;
-                }
             }
         }
         Ok(rows)
@@ -312,8 +304,7 @@ impl<'a> Batch<'a> {
             turn(&mut self.particles[i], body, passed);
             self.particles[i].time = self.clock;
         }
-        let across = normal_to(direction);
-        let apart = approach(direction, across, square.sqrt(), around) * reach;
+        let apart = approach(direction, direction.across(), square.sqrt(), around) * reach;
         let states: [PairState; 2] = std::array::from_fn(|side| {
             let p = &self.particles[pair[side]];
             PairState {
@@ -382,22 +373,6 @@ impl<'a> Batch<'a> {
             start = end;
         }
     }
-}
-
-/// A unit vector across another.
-fn normal_to(u: Vector) -> Vector {
-    let other = if u.x.abs() < 0.6 {
-        Vector::new(1.0, 0.0, 0.0)
-    } else {
-        Vector::new(0.0, 1.0, 0.0)
-    };
-    let across = u.cross(other);
-    across / across.norm()
-}
-
-/// The number of looks that fill so many places.
-fn rows_of(gas: &Gas<'_>, places: usize) -> usize {
-    places / (GAS_WHOLE.len() + gas.kinds.len() * GAS_KIND.len())
 }
 
 /// Turns a body for a time.

@@ -52,6 +52,18 @@ impl Vector {
         self.dot(self).sqrt()
     }
 
+    /// A unit vector across this one, whose own length is 1.
+    #[inline(always)]
+    pub fn across(self) -> Self {
+        let aside = if self.x.abs() < 0.6 {
+            Self::new(1.0, 0.0, 0.0)
+        } else {
+            Self::new(0.0, 1.0, 0.0)
+        };
+        let across = self.cross(aside);
+        across / across.norm()
+    }
+
     /// Length of the component along the plane.
     pub fn horizontal(self) -> f64 {
         self.x.mul_add(self.x, self.y * self.y).sqrt()

@@ -122,14 +122,9 @@ impl Encounters<'_> {
                 };
             }
             let attitude = draws.attitude();
-            let [a, b, c] = body.inverse_moments;
             let spin = match self.spin {
                 Some(given) => given[i],
-                None => {
-                    let [x, y, z] = draws.normals();
-                    let part = |w: f64, inverse: f64| w * (self.rotational[i] * inverse).sqrt();
-                    (attitude * body.axes).rotate(Vector::new(part(x, a), part(y, b), part(z, c)))
-                }
+                None => draws.spin(body, attitude, [self.rotational[i]; 3]),
             };
             PairState {
                 position: places[i],
@@ -241,6 +236,16 @@ impl Draws {
         let ((s, t), (u, _)) = (sincos(TAU * b), sincos(TAU * d));
         let [p, q] = [a, c].map(|x| (-2.0 * ln(1.0 - x)).sqrt());
         [p * s, p * t, q * u]
+    }
+
+    /// ω, in the axes of space, of a Maxwellian with a temperature about each principal axis.
+    #[inline(always)]
+    pub fn spin(&mut self, body: &Partner, attitude: Quaternion, temperatures: [f64; 3]) -> Vector {
+        let normals = self.normals();
+        let [x, y, z] = std::array::from_fn(|i| {
+            normals[i] * (temperatures[i] * body.inverse_moments[i]).sqrt()
+        });
+        (attitude * body.axes).rotate(Vector::new(x, y, z))
     }
 
     /// An attitude, uniform on SO(3): K. Shoemake, *Uniform random rotations*, Graphics Gems III (1992).

@@ -117,12 +117,7 @@ impl Piece {
         let mut round = Symmetric::diagonal([square; 3]);
         if flat {
             round = round + Symmetric::square(axis, -square);
-            let aside = if axis.x.abs() < 0.5 {
-                Vector::new(1.0, 0.0, 0.0)
-            } else {
-                Vector::new(0.0, 1.0, 0.0)
-            };
-            let across = axis.cross(aside);
+            let across = axis.across();
             let [x, y] = [across, axis.cross(across)];
             features.push(Feature::new(ends[1], &[x, y]));
             features.push(Feature::new(ends[0], &[y, x]));

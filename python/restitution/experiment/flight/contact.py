@@ -74,14 +74,17 @@ class ContactTime(Parameters):
             If a value is out of range.
         """
         given = _Ball(diameter=diameter, mass=mass)
-        for name, one in (("ball", ball), ("plate", plate)):
-            if not isinstance(one, dict) and (name == "ball" or one is not None):
+        given_sides = {"ball": ball} if plate is None else {"ball": ball, "plate": plate}
+        for name, one in given_sides.items():
+            if not isinstance(one, dict):
                 raise ParameterError(wrong(name, one, "a dict with young_modulus and poisson_ratio"))
-        uncertainty = real("relative_uncertainty", relative_uncertainty, "a number in [0, 1]", _share)
-        sides = [_Elastic(**one) for one in (ball, plate) if one is not None]
+        share = real(
+            "relative_uncertainty", relative_uncertainty, "a number in [0, 1]", lambda x: 0.0 <= x <= 1.0
+        )
+        sides = [_Elastic(**one) for one in given_sides.values()]
         softness = sum((1.0 - one.poisson_ratio**2) / one.young_modulus for one in sides)
         time = _hertz(given.mass, given.diameter, 1.0 / softness)
-        return cls(at_1_m_s=time, uncertainty=uncertainty * time)
+        return cls(at_1_m_s=time, uncertainty=share * time)
 
     @classmethod
     def possible(
@@ -107,10 +110,6 @@ class ContactTime(Parameters):
         stiffness = 4.0 * young * wall**2 / (radius * math.sqrt(3.0 * (1.0 - poisson**2)))
         heavy = mass or 4.0 * math.pi * radius**2 * wall * density
         return cls(at_1_m_s=0.0, uncertainty=math.pi * math.sqrt(heavy / stiffness))
-
-
-def _share(x: float) -> bool:
-    return 0.0 <= x <= 1.0
 
 
 class _Ball(Parameters):
