@@ -109,7 +109,7 @@ impl Gas<'_> {
                 if batch >= self.batches || monitor.is_cancelled() {
                     return Ok(());
                 }
-                let found = Batch::new(self, batch)?.run(law, resources.level, monitor)?;
+                let found = Batch::new(self, batch)?.run(law, monitor)?;
                 let mut rows = rows.lock().expect("nobody panics who holds it");
                 rows[batch * size..][..found.len()].copy_from_slice(&found);
             }
@@ -223,7 +223,7 @@ impl<'a> Batch<'a> {
         of_gas(self.gas.seed, (self.number as u64) << 48 | self.drawn)
     }
 
-    fn run(mut self, law: &Law<'_>, level: Level, monitor: &Monitor) -> Result<Vec<f64>, Error> {
+    fn run(mut self, law: &Law<'_>, monitor: &Monitor) -> Result<Vec<f64>, Error> {
         let gas = self.gas;
         let count = self.particles.len();
         let each = 0.5 * count as f64 * gas.collisions / gas.samples as f64;
@@ -266,7 +266,7 @@ impl<'a> Batch<'a> {
             if chance >= share {
                 continue;
             }
-            self.meet(law, level, [i, j], bodies, u / speed, both)?;
+            self.meet(law, [i, j], bodies, u / speed, both)?;
             while looks <= gas.samples && self.whole.collisions >= each * looks as f64 {
                 self.look(&mut rows);
                 looks += 1;
@@ -281,7 +281,6 @@ impl<'a> Batch<'a> {
     fn meet(
         &mut self,
         law: &Law<'_>,
-        level: Level,
         pair: [usize; 2],
         bodies: [&Partner; 2],
         direction: Vector,
@@ -327,7 +326,7 @@ impl<'a> Batch<'a> {
         let seed = gas.seed;
         let between = &mut self.between[..bodies[0].pieces.len() * bodies[1].pieces.len()];
         between.fill(Between::default());
-        let outcome = level.run(Following {
+        let outcome = Level::run_scalar(Following {
             bodies,
             law,
             states,

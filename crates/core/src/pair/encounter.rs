@@ -100,7 +100,7 @@ pub fn encounter(
     mut hit: impl FnMut(&Hit),
 ) -> Result<Outcome, Trouble> {
     let mut between = vec![Between::default(); bodies[0].pieces.len() * bodies[1].pieces.len()];
-    Level::best().run(Following {
+    Level::run_scalar(Following {
         bodies,
         law,
         states,
@@ -121,7 +121,7 @@ pub fn narrowest(bodies: [&Partner; 2], states: &[PairState; 2]) -> f64 {
     search.narrowest(&mut flight(bodies, apart, Vector::default(), &turning))
 }
 
-/// An encounter, compiled once for each SIMD level: whoever follows one runs it at a level.
+/// An encounter; it has no packs.
 pub(crate) struct Following<'a, 'b> {
     pub bodies: [&'a Partner; 2],
     pub law: &'a Law<'b>,

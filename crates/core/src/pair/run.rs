@@ -296,7 +296,7 @@ impl Encounters<'_> {
                     rows,
                     between: &mut between,
                 };
-                let sum = block.sum(resources.level, &add)?;
+                let sum = block.sum(&add)?;
                 done.lock()
                     .expect("nobody panics who holds it")
                     .push((number, sum));
@@ -397,11 +397,7 @@ struct EncounterBlock<'a, 'b> {
 }
 
 impl EncounterBlock<'_, '_> {
-    fn sum<T: Default>(
-        self,
-        level: Level,
-        add: impl Fn(&Encountered, &[Hit], &mut T),
-    ) -> Result<T, Error> {
+    fn sum<T: Default>(self, add: impl Fn(&Encountered, &[Hit], &mut T)) -> Result<T, Error> {
         let Encounters {
             bodies,
             first,
@@ -420,7 +416,7 @@ impl EncounterBlock<'_, '_> {
             }
             hits.clear();
             self.between.fill(Between::default());
-            let outcome = level.run(Following {
+            let outcome = Level::run_scalar(Following {
                 bodies,
                 law: self.law,
                 states: before,

@@ -99,6 +99,22 @@ impl Level {
             .expect("the level was checked when it was chosen")
     }
 
+    /// Runs what has no packs: with fused multiply-add where this machine has it, but not compiled for the widest registers as well,
+    /// which it does not use.
+    #[cfg(target_arch = "x86_64")]
+    pub(crate) fn run_scalar<W: WithSimd>(work: W) -> W::Output {
+        match pulp::x86::V3::try_new() {
+            Some(simd) => Simd::vectorize(simd, work),
+            None => Simd::vectorize(Scalar::new(), work),
+        }
+    }
+
+    /// Runs what has no packs.
+    #[cfg(not(target_arch = "x86_64"))]
+    pub(crate) fn run_scalar<W: WithSimd>(work: W) -> W::Output {
+        Self::best().run(work)
+    }
+
     #[cfg(target_arch = "x86_64")]
     fn try_run<W: WithSimd>(self, work: W) -> Option<W::Output> {
         use pulp::x86::{V3, V4};
