@@ -1,7 +1,7 @@
 """What a nearly round ball does to a measurement: figures and tables of docs/roundness.md.
 
 Run ``python examples/roundness.py OUT`` to write ``roundness.png``, ``budget.png``, ``required.png`` and
-``roundness.md`` into the folder OUT: some ten seconds.
+``roundness.md`` into the folder OUT: some twenty seconds.
 """
 
 import sys
@@ -20,6 +20,7 @@ Array = npt.NDArray[np.float64]
 
 DIAMETER, NORMAL, GRAVITY, DROP, IMPACTS = 6e-3, 0.95, 9.81, 0.1, 20
 LAW = rs.Frictionless(normal=NORMAL)
+STICKS = rs.Coulomb(normal=NORMAL, friction=0.2)
 STEEL, GLASS = 7800.0, 2500.0
 BALLS = {
     "glass bead, L/R = 0.01": (6e-3, 0.0025 * 6e-3, GLASS),
@@ -125,10 +126,10 @@ FORMS_AT = (3e-6, 1e-5, 3e-5, 1e-4)
 def balls() -> str:
     """Tabulate what balls are, and what their shape does beside everything else."""
     lines = [
-        "| ball | t (µm) | Ra (µm) | L/R | kick K | one ε: shape | one ε: roughness | one ε: the rest "
-        "| mean: shape | mean: roughness | mean: the rest |"
+        "| ball | t (µm) | Ra (µm) | L/R | kick K | one ε: shape | and friction | one ε: roughness "
+        "| one ε: the rest | mean: shape | and friction | mean: roughness | mean: the rest |"
     ]
-    lines.append("|---" * 11 + "|")
+    lines.append("|---" * 13 + "|")
     every = {
         f"steel, grade {grade}": (6e-3, t, STEEL, ROUGHNESS.get(grade, 0.0)) for grade, t in GRADES.items()
     }
@@ -137,10 +138,15 @@ def balls() -> str:
         body = rs.from_roundness(diameter, t, density=density)
         setting = {"drop": DROP, "impacts": IMPACTS, "roughness": ra} | STATED
         data = rs.error_budget(body, LAW, **setting).data  # type: ignore[arg-type]
+        sticks = rs.error_budget(body, STICKS, drop=DROP, impacts=IMPACTS).data.sel(source="shape")
         rest = ["timing", "gravity", "drop"]
         parts = []
-        for variable in (data.standard_deviation.isel(impact=-1), data.mean_standard_deviation):
+        for variable, stuck in (
+            (data.standard_deviation.isel(impact=-1), sticks.standard_deviation[-1]),
+            (data.mean_standard_deviation, sticks.mean_standard_deviation),
+        ):
             parts.append(f"{float(variable.sel(source='shape')):.1e}")
+            parts.append(f"{float(stuck):.1e}")
             parts.append(f"{float(variable.sel(source='roughness')):.1e}" if ra else "–")
             parts.append(f"{float(np.sqrt((variable.sel(source=rest) ** 2).sum())):.1e}")
         cells = [
@@ -162,9 +168,9 @@ def budget() -> rs.ErrorBudget:
     return rs.error_budget(body, LAW, drop=DROP, impacts=IMPACTS, **STATED)  # type: ignore[arg-type]
 
 
-def required() -> rs.RequiredRoundness:
+def required(law: rs.Frictionless | rs.Coulomb = LAW) -> rs.RequiredRoundness:
     """How round 6 mm must be for 0.1 %."""
-    return rs.required_roundness(1e-3, diameter=DIAMETER, law=LAW, drop=DROP, impacts=IMPACTS)
+    return rs.required_roundness(1e-3, diameter=DIAMETER, law=law, drop=DROP, impacts=IMPACTS)
 
 
 def tables() -> dict[str, str]:
@@ -174,6 +180,7 @@ def tables() -> dict[str, str]:
         "forms": forms(),
         "budget": budget().table() + "\n",
         "required": required().table() + "\n",
+        "required with friction": required(STICKS).table() + "\n",
     }
 
 
