@@ -58,7 +58,7 @@ def speed(peers: Peers, work: Work, particles: int, rounds: int) -> None:
 
 
 def throughput(times: timing.Times) -> list[str]:
-    """What share of the vector units' throughput each level reached."""
+    """The share of the vector units' throughput that each level reached."""
     from benchmarks.throughput import clock, shares
 
     best = {

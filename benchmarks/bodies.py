@@ -1,4 +1,4 @@
-"""What every body, law and release costs, beside the equal dumbbell dropped from rest with the paper's law.
+"""The cost of every body, law and release, beside the equal dumbbell dropped from rest with the paper's law.
 
 The dumbbell has L/R = 0.1, and every row bounces as often as it does. Ratios are taken within a round; a row
 is given as many particles as take it about `SECONDS`.
@@ -206,7 +206,7 @@ class Timed:
 
 
 def particles_for(job: Timed, seconds: float, least: int) -> int:
-    """How many particles take about that long; what a call costs besides them must not count."""
+    """The number of particles that take about that long; the cost of a call besides them must not count."""
     job.run(least, 0)
     particles = least
     while particles < MOST:

@@ -1,4 +1,4 @@
-"""Whether posteriors are calibrated: synthetic experiments whose truth is drawn from the prior.
+"""Calibration of posteriors: synthetic experiments whose truth is drawn from the prior.
 
 ``python -m benchmarks.calibration OUT [EXPERIMENTS]`` writes ``calibration.png``, ``calibration.md`` and
 ``calibration.csv`` into the folder OUT; 120 experiments take some five minutes on one core. If the posterior

@@ -1,4 +1,4 @@
-"""What is not speed: how long the start takes, and how much memory statistics need.
+"""The time of the start, and the memory that statistics need.
 
 `python -m benchmarks.footprint PARTICLES ROW` runs a row of `bodies` and prints what it took; `memory` does
 that in a process of its own.

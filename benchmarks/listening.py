@@ -1,4 +1,4 @@
-"""How well impacts are heard: `python -m benchmarks.listening` prints the tables of docs/listening.md.
+"""Errors of impacts that are heard: `python -m benchmarks.listening` prints the tables of docs/listening.md.
 
 Balls are simulated, their impacts are turned into sound with one trouble or another, and what is heard is
 compared with what was simulated. Three minutes on one core.
@@ -74,7 +74,7 @@ CONDITIONS = (
 
 @dataclass(frozen=True)
 class Heard:
-    """What was made of several recordings of one condition.
+    """The results of several recordings of one condition.
 
     Attributes
     ----------

@@ -11,7 +11,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Sound:
-    """What one impact sounds like.
+    """The sound of one impact.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How many drops tell whether the surface or the material makes ε scatter.
+"""The number of drops that tell whether the surface or the material makes ε scatter.
 
 ``python -m benchmarks.shape_or_material`` prints the table of docs/inference.md, in some two minutes on one
 core. Balls of 6 mm with ε_n = 0.93 are dropped from 0.1 m, and 15 impacts of each drop are timed to 20 µs.

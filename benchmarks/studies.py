@@ -1,4 +1,4 @@
-"""What a parameter study costs besides its impacts: on a cluster, with ten thousand points, when it is read.
+"""The cost of a parameter study besides its impacts: on a cluster, with ten thousand points, when it is read.
 
 `python -m benchmarks --rows studies` prints all of it. Overhead is CPU time of the workers that is
 not spent in the call that drops the particles, so that other work on the machine is not taken for overhead.

@@ -1,4 +1,4 @@
-"""How much of what the vector units could do the engine does.
+"""The engine's share of the throughput of the vector units.
 
 The instructions of a vector of impacts are counted from the machine code for the job of Fig. 2, in
 docs/performance.md. The multiplications set the peak: processors have two units for them, which on some are

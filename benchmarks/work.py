@@ -1,4 +1,4 @@
-"""What every peer is asked to do, and what it hands back."""
+"""The task of every peer, and the result it hands back."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

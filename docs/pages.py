@@ -171,7 +171,7 @@ def theory(percent: int, images: Path | None) -> str:
 
 @dataclass(frozen=True)
 class Block:
-    """What makes a page's tables and figures, how large the run is for the page and for its stamp."""
+    """The script of a page's tables and figures, and the size of its run for the page and for its stamp."""
 
     make: Callable[[int, Path | None], str]
     size: int

@@ -29,7 +29,7 @@ COUNTS = {
 }
 """Math. Gazette 97 (2013), 97.16, Table 1: height over side, share of throws on a square face, throws."""
 LAWS = {"0.5": (0.5, 0.3), "0.7": (0.7, 0.3), "0.9": (0.9, 0.3), "0.9, μ = 0": (0.9, 0.0)}
-"""What is written of a law, ε_n and μ."""
+"""The caption of a law, ε_n and μ."""
 WIDTHS = (0.1, 0.3, 0.5, 0.7, 0.9)
 NICKEL = rs.Cylinder(radius=10.605e-3, height=1.95e-3)
 

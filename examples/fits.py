@@ -53,7 +53,7 @@ FAMILIES: dict[str, Callable[..., fit.Fit]] = {
 
 @dataclass(frozen=True)
 class Measured:
-    """What the figure and the tables show."""
+    """The contents of the figure and the tables."""
 
     particles: int
     judged: int  # of them, behind the table of families and its p-values

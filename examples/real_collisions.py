@@ -113,7 +113,7 @@ LAWS: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
     "`ChatterjeeRuina`": (rs.ChatterjeeRuina, ("normal", "friction", "tangential")),
     "Whittaker, a `CustomLaw`": (whittaker, ("normal", "friction")),
 }
-"""How a law is made, and the names of its parameters."""
+"""The constructor of a law, and the names of its parameters."""
 GUESS = {"normal": (0.5, 0.0, 1.0), "friction": (0.2, 0.0, 3.0), "tangential": (0.2, -1.0, 1.0)}
 """Where a fit begins, and between what it looks."""
 

@@ -1,4 +1,4 @@
-"""What a nearly round ball does to a measurement: figures and tables of docs/roundness.md.
+"""A nearly round ball in a measurement: figures and tables of docs/roundness.md.
 
 Run ``python examples/roundness.py OUT`` to write ``roundness.png``, ``budget.png``, ``required.png`` and
 ``roundness.md`` into the folder OUT: some twenty seconds.
@@ -169,7 +169,7 @@ def budget() -> rs.ErrorBudget:
 
 
 def required(law: rs.Frictionless | rs.Coulomb = LAW) -> rs.RequiredRoundness:
-    """How round 6 mm must be for 0.1 %."""
+    """Return the out-of-roundness that 6 mm may have for 0.1 %."""
     return rs.required_roundness(1e-3, diameter=DIAMETER, law=law, drop=DROP, impacts=IMPACTS)
 
 

@@ -65,7 +65,7 @@ def licences(package: str, target: str) -> str:
 
 
 def is_fresh(path: Path) -> bool:
-    """Whether the file lists the crates that `Cargo.lock` gives."""
+    """Return whether the file lists the crates that `Cargo.lock` gives."""
     parts = path.read_text().split(RULE) if path.exists() else []
     listed = [part.split(",")[0] for part in parts]
     return [name for name in listed if name[-1].isdigit()] == crates(*FILES[path])

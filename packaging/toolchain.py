@@ -14,7 +14,7 @@ DEBIAN = [
 
 
 class Toolchain(NamedTuple):
-    """What to call, with which environment, and whether the standard library must be built with the rest."""
+    """The command to call, its environment, and whether the standard library must be built with the rest."""
 
     cargo: str
     environment: dict[str, str]

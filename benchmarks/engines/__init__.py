@@ -1,1 +1,1 @@
-"""What other engines do to a bouncing dumbbell, against the exact solution; docs/performance.md."""
+"""A bouncing dumbbell in other engines, against the exact solution; docs/performance.md."""

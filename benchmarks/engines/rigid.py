@@ -1,4 +1,4 @@
-"""What a first impact costs an engine whose error of ε is below 0.01, beside this one; docs/performance.md.
+"""The cost of a first impact in engines whose error of ε is below 0.01, beside this; docs/performance.md.
 
 `python -m benchmarks.engines.rigid [ENGINE...]`, where this package and requirements.txt are installed.
 """

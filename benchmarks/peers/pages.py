@@ -1,4 +1,4 @@
-"""What it costs to write the arrays of `simulate` to memory, and nothing else.
+"""The cost of writing the arrays of `simulate` to memory, and nothing else.
 
 As in every program, the system hands out the pages when they are first written. NumPy asks for huge ones
 where the system leaves that to the program; the other row is the same on pages of the usual size.

@@ -59,7 +59,7 @@ def rows() -> list[Peer[Grid]]:
 
 
 def name(level: str, threads: int, counts_only: bool = False) -> str:
-    """What the row is called."""
+    """The name of the row."""
     call = "counts only" if counts_only else "statistics"
     return f"{call}, {level}, {threads} thread{'s' * (threads > 1)}"
 

@@ -1,4 +1,4 @@
-//! How bodies, laws and materials describe themselves: lists, forms, files and tests follow from one entry for each.
+//! Descriptions of bodies, laws and materials: lists, forms, files and tests follow from one entry for each.
 
 use crate::Error;
 

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use restitution_core::gas::{GAS_KIND, GAS_WHOLE, Gas, Phase, Species};
 use restitution_core::pair::Partner;
 
-/// How the gas is followed.
+/// Density, length, statistics and seed of a run.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Course {

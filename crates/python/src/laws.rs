@@ -109,7 +109,7 @@ enum Asked {
     Known(Arc<restitution_core::Material>, Rule),
 }
 
-/// What becomes of an impulse that pulls.
+/// The treatment of an impulse that pulls.
 #[derive(Clone, Copy, PartialEq)]
 enum Pull {
     /// It acts.

@@ -62,7 +62,7 @@ fn arguments<'a>(parameters: &[Parameter], numbers: &mut &'a [f64]) -> Vec<Argum
     parameters.iter().map(argument).collect()
 }
 
-/// What there is to draw of a body behind the parameters: three times the number of points and their places, and the numbers of triangles; or
+/// The drawing of a body behind the parameters: three times the number of points and their places, and the numbers of triangles; or
 /// minus twice the number of points (z, r) of a profile, and these; or nothing, where it is its balls or points that lie farthest.
 pub fn drawing(numbers: &[f64]) -> Result<Vec<f64>, Error> {
     let (&number, mut rest) = numbers.split_first().expect("a kind");

@@ -46,7 +46,7 @@ class _Kind(NamedTuple):
     translational: float
     rotational: tuple[float, float, float]
     turned: tuple[bool, bool, bool]
-    """Whether contacts turn it about each principal axis."""
+    """For each principal axis, true if contacts turn the body about it."""
 
 
 def cool(

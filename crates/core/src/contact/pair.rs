@@ -36,7 +36,7 @@ pub(crate) struct PairFlight {
     pub apart: Vector,
     pub velocity: Vector,
     pub turns: [Turn; 2],
-    /// What bounds the velocity and the acceleration of a point of each, per distance from its centre of mass.
+    /// Bounds of the velocity and the acceleration of a point of each, per distance from its centre of mass.
     pub bounds: [[f64; 2]; 2],
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct PairSearch<'a> {
     pub size: f64,
 }
 
-/// What a search remembers of two parts.
+/// The memory of a search about two parts.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Between {
     /// They do not touch up to this time.

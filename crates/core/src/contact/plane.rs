@@ -65,7 +65,7 @@ pub(crate) struct GapExpansion {
     pub acceleration: f64,
 }
 
-/// What is known of the flight before a time, and the gap then.
+/// The knowledge of the flight before a time, and the gap then.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BackwardBound {
     pub gap: GapExpansion,

@@ -41,17 +41,17 @@ const CREATED: f64 = 1e-12;
 pub struct Species<'a> {
     /// The body.
     pub body: &'a Partner,
-    /// How many there are, over all batches.
+    /// Their number, over all batches.
     pub particles: usize,
     /// Their first temperature of translation, in units of energy.
     pub translational: f64,
     /// Those of rotation about the principal axes.
     pub rotational: [f64; 3],
-    /// Whether contacts turn it about each of them; the energy of rotation is that about these.
+    /// For each of them, true if contacts turn it about that axis; the energy of rotation is that about these.
     pub turned: [bool; 3],
 }
 
-/// How far a body turns between two encounters.
+/// The rotation between two encounters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// As far as it does in the time between them.

@@ -1,4 +1,4 @@
-//! What is recorded of a gas: counts since the beginning, and moments of each kind of bodies.
+//! The record of a gas: counts since the beginning, and moments of each kind of bodies.
 
 use super::Species;
 use crate::math::{Quaternion, Vector};

@@ -1,4 +1,4 @@
-//! How the points of a free body move about its centre of mass, along one flight.
+//! The motion of the points of a free body about its centre of mass, along one flight.
 //!
 //! A point **p** on the axis **e** of a body with two equal moments J turns with it about the angular momentum **Λ** at the rate |Λ|/J, and
 //! |**p**″| = |p||**ω** × **e**||Λ|/J. Any other point has |**p**″| ≤ (1 + a/√3)Ω²|**p**| ([`SpinBounds`](super::SpinBounds)).

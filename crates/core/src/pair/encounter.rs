@@ -28,7 +28,7 @@ pub struct PairState {
     pub spin: Vector,
 }
 
-/// How an encounter ends.
+/// The end of an encounter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
     /// Without a contact.

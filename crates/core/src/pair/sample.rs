@@ -29,7 +29,7 @@ pub struct Encounters<'a> {
     pub first: u64,
     /// Number of encounters.
     pub count: usize,
-    /// How they meet.
+    /// The velocities with which they meet.
     pub meeting: Meeting,
     /// The distance between the lines on which the centres of mass approach, if it is given.
     pub impact_parameter: Option<f64>,

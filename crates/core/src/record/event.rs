@@ -13,7 +13,7 @@ use std::ops::Range;
 pub(crate) trait Process: Sized + 'static {
     /// A run that has been checked.
     type Plan<'a>: Sync;
-    /// What is known of a row before its first event.
+    /// The state of a row before its first event.
     type Row: Described<Of = Self>;
     /// Why the events of a row end.
     type Reason: Copy;
@@ -51,7 +51,7 @@ pub(crate) trait Process: Sized + 'static {
 pub(crate) trait Source: Sync {
     type Of: Process;
 
-    /// What is the same for all rows.
+    /// The part that is the same for all rows.
     fn plan(&self) -> &<Self::Of as Process>::Plan<'_>;
 
     /// The run of a row, and its number there.

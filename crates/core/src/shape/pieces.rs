@@ -23,7 +23,7 @@ pub(crate) struct Piece {
     pub reach: f64,
 }
 
-/// What a part is.
+/// The kind of a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum PieceKind {
     /// A ball with this centre and this radius.

@@ -45,7 +45,7 @@ pub(crate) struct Point {
     pub number: u32,
 }
 
-/// What bounds the gaps of the balls of a node.
+/// Bounds of the gaps of the balls of a node.
 struct Node {
     /// **c** and c.
     middle: [f32; 3],
@@ -225,7 +225,7 @@ impl Quarters {
 /// Four numbers side by side.
 type Four = Pack<Scalar, 4>;
 
-/// What bounds the balls of four nodes.
+/// Bounds of the balls of four nodes.
 struct FourBounds {
     gap: Four,
     rate: Four,
@@ -443,10 +443,10 @@ impl BallTree {
     }
 }
 
-/// How far a search goes.
+/// The limits of a search.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pruning {
-    /// What costs more is not looked for.
+    /// The cost from which nothing is looked for.
     pub most: f64,
     /// Nodes are not looked into where all balls cost more than this part of the best, unless that is below `short`: then others are looked
     /// for up to [`BEYOND`] times the best, so that it is known for how long it is the only one.
@@ -509,7 +509,7 @@ impl Cheapest {
     }
 }
 
-/// What a search evaluates, counted for `docs/shapes.md`.
+/// Counts of what a search evaluates, for `docs/shapes.md`.
 #[cfg(test)]
 pub(crate) mod evaluations {
     use std::cell::Cell;
@@ -534,7 +534,7 @@ pub(crate) mod evaluations {
         COUNTS.with(|counts| counts[what as usize].update(|count| count + 1));
     }
 
-    /// How many there were on this thread since the last call.
+    /// The counts of this thread since the last call.
     pub(crate) fn taken() -> [u64; 4] {
         COUNTS.with(|counts| counts.each_ref().map(Cell::take))
     }

@@ -1,4 +1,4 @@
-"""How long a contact lasts, which times of impacts contain beside the flight."""
+"""The duration of a contact, which times of impacts contain beside the flight."""
 
 import math
 from typing import Annotated

@@ -25,11 +25,11 @@ pub(super) struct ImpactSoFar {
     work: f64,
     /// The most work that the contact has taken so far.
     taken: f64,
-    /// What this restitution has to give: impulse under Poisson's, work under Stronge's hypothesis.
+    /// The amount that this restitution has to give: impulse under Poisson's, work under Stronge's hypothesis.
     owed: f64,
 }
 
-/// What a part of the path adds.
+/// The sums over a part of the path.
 pub(super) struct Gain {
     pub normal: f64,
     pub friction: [f64; 2],
