@@ -17,6 +17,7 @@ struct Course {
     uniform: bool,
     batches: usize,
     collisions: f64,
+    heating: f64,
     samples: usize,
     seed: u64,
 }
@@ -63,6 +64,7 @@ fn cool<'py>(
         },
         batches: course.batches,
         collisions: course.collisions,
+        heating: course.heating,
         samples: course.samples,
         seed: course.seed,
     };

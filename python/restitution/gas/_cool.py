@@ -19,7 +19,7 @@ from restitution.laws import CollisionLaw, Frictionless
 
 Phase = Literal["time", "uniform"]
 
-_PARTICLE = 88
+_PARTICLE = 96
 """Bytes."""
 _WARM = "a finite number >= 0 (J)"
 
@@ -59,6 +59,7 @@ def cool(
     rotational_temperature: float | Sequence[float] | None = None,
     spin_temperature: float | Sequence[float] | None = None,
     number_density: float = 1.0,
+    heating: float = 0.0,
     phase: Phase = "time",
     samples: int = 50,
     batches: int = 10,
@@ -93,7 +94,12 @@ def cool(
         Of the rotation about the axis of bodies of revolution, which contacts without friction do not change;
         T_rot if left out.
     number_density : float
-        Particles per volume, in 1/m³. Times go with its inverse, and nothing else depends on it.
+        Particles per volume, in 1/m³. Without heating times go with its inverse, and nothing else depends
+        on it.
+    heating : float
+        The mean power that a particle receives from a noise of forces, white in time, in W: in a time t a
+        component of its velocity gains a normal number of variance 2 heating t/3m. The mean velocity of the
+        gas is kept at 0. Where collisions take as much, the gas is steady.
     phase : {"time", "uniform"}
         Bodies turn between encounters for the time that passes, or so far that the phase of their rotation is
         uniform, as in the limit of low density.
@@ -149,6 +155,9 @@ def cool(
         "number_density": positive("number_density", number_density, "m-3"),
         "uniform": phase == "uniform",
         "batches": whole("batches", batches, 2, 10**4),
+        "heating": real(
+            "heating", heating, "a finite number >= 0 (W)", lambda p: 0.0 <= p < math.inf, unit="W"
+        ),
         "collisions": real("collisions", collisions, "a number in (0, 10⁹]", lambda x: 0.0 < x <= 1e9),
         "samples": whole("samples", samples, 1, 10**6),
         "seed": whole("seed", seed, 0, 2**64 - 1),
@@ -165,7 +174,13 @@ def cool(
     if interrupted:
         raise interrupted
     data = _dataset(kinds, table, total)
-    data.attrs |= {"law": str(law), "seed": seed, "phase": phase, "number_density": number_density}
+    data.attrs |= {
+        "law": str(law),
+        "seed": seed,
+        "phase": phase,
+        "number_density": number_density,
+        "heating": heating,
+    }
     data.attrs |= {"batches": batches, "body": ", ".join(str(kind.body) for kind in kinds)}
     if not isinstance(body, list | tuple):
         data = data.isel(species=0)

@@ -5,6 +5,10 @@
 //! largest S and of a majorant c of u, and one is followed as an encounter with the probability S²u over that of the majorant, on a line that is
 //! uniform on the disc. This is M. Kac's process, without a step of time (G. A. Bird, *Molecular Gas Dynamics* (1994), Sec. 11.1, without cells). Between
 //! encounters a body turns freely for the time that has passed, or for one so long that its phase is uniform, as in the limit n → 0.
+//!
+//! A gas may be heated by a white noise of forces: in a time t a component of the velocity of a particle gains a normal number of variance 2Pt/3m, with P
+//! the power that each particle receives (D. R. M. Williams and F. C. MacKintosh, Phys. Rev. E 54, R9 (1996)). Between encounters nothing else
+//! happens to a velocity, so that this is exact if it is drawn, for the time that has passed, whenever the velocity is asked for.
 
 mod moments;
 
@@ -14,7 +18,7 @@ use crate::contact::Between;
 use crate::law::Law;
 use crate::math::{Quaternion, Vector};
 use crate::motion::Rotation;
-use crate::pair::{Draws, Ending, Following, PairState, Partner, approach, failed};
+use crate::pair::{Draws, Ending, Following, PairState, Partner, approach, failed, normals};
 use crate::random::{of_gas, of_impact};
 use crate::simd::Level;
 use crate::threads::{Monitor, Resources};
@@ -27,6 +31,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The majorant of u over twice the largest speed at the last look at all of them.
 const ROOM: f64 = 1.02;
+/// What is added to it for velocities that noise changes until the next look: seven standard deviations of it.
+const NOISE: f64 = 0.1;
+const DEVIATIONS: f64 = 7.0;
 /// Turns, on average, after which a phase counts as uniform.
 const TURNS: f64 = 1e4;
 /// Temperatures over masses, and rates of collisions, that are followed.
@@ -73,6 +80,8 @@ pub struct Gas<'a> {
     pub batches: usize,
     /// Encounters with contact, of a particle, after which it ends.
     pub collisions: f64,
+    /// The mean power that a particle receives from a noise of forces.
+    pub heating: f64,
     /// Looks at the gas after the first.
     pub samples: usize,
     /// The seed.
@@ -84,8 +93,9 @@ struct Particle {
     velocity: Vector,
     attitude: Quaternion,
     spin: Vector,
-    /// When it was so.
+    /// The time up to which it has turned, and that up to which it has been heated.
     time: f64,
+    heated: f64,
 }
 
 impl Gas<'_> {
@@ -122,10 +132,19 @@ impl Gas<'_> {
         Ok(rows.into_inner().expect("nobody panics who holds it"))
     }
 
+    /// The variance that a component of the velocity gains in a time, over the time.
+    fn noise(&self, inverse_mass: f64) -> f64 {
+        2.0 / 3.0 * self.heating * inverse_mass
+    }
+
     fn check(&self) -> Result<(), Error> {
         let holds = self.collisions.is_finite() && self.collisions > 0.0;
         Error::unless(holds, "collisions", self.collisions, "finite and > 0")?;
         for kind in &self.kinds {
+            let power = self.heating * kind.body.inverse_mass;
+            let some = "0, or such that velocities neither overflow nor underflow (W)";
+            let holds = power == 0.0 || MODERATE.contains(&power);
+            Error::unless(holds, "heating", self.heating, some)?;
             let each = kind.particles / self.batches;
             let least = "at least 2 for each of the batches";
             Error::unless(each >= 2, "particles", kind.particles as f64, least)?;
@@ -191,6 +210,7 @@ impl<'a> Batch<'a> {
                     attitude,
                     spin: draws.spin(body, attitude, kind.rotational),
                     time: 0.0,
+                    heated: 0.0,
                 });
             }
             settle(&mut particles[start..], kind);
@@ -234,15 +254,24 @@ impl<'a> Batch<'a> {
             .fold(0.0, f64::max);
         let area = PI * (2.0 * reach) * (2.0 * reach);
         let pairs = count as f64 * (count - 1) as f64;
+        let lightest = gas.kinds.iter().map(|kind| kind.body.inverse_mass);
+        let noise = gas.noise(lightest.fold(0.0, f64::max));
         let mut rows = Vec::new();
         self.look(&mut rows);
-        let mut fastest = 0.0;
+        let (mut fastest, mut until) = (0.0, 0.0);
         let mut since = count;
         let (mut looks, mut finished) = (1, 0);
         while looks <= gas.samples {
-            if since == count {
+            if since == count || self.clock > until {
+                self.heat_all();
                 let square = |p: &Particle| p.velocity.dot(p.velocity);
-                fastest = 2.0 * ROOM * self.particles.iter().map(square).fold(0.0, f64::max).sqrt();
+                let most = self.particles.iter().map(square).fold(0.0, f64::max).sqrt();
+                (fastest, until) = (2.0 * ROOM * most, f64::INFINITY);
+                if gas.heating > 0.0 {
+                    fastest += 2.0 * NOISE * most;
+                    let deviation = NOISE * most / DEVIATIONS;
+                    until = self.clock + deviation * deviation / noise;
+                }
                 since = 0;
                 if monitor.is_cancelled() {
                     return Ok(Vec::new());
@@ -255,6 +284,8 @@ impl<'a> Batch<'a> {
             let place = (which * pairs) as usize;
             let (i, j) = (place / (count - 1), place % (count - 1));
             let j = if j < i { j } else { j + 1 };
+            self.heat(i);
+            self.heat(j);
             let u = self.particles[i].velocity - self.particles[j].velocity;
             let speed = u.norm();
             let bodies = [self.kind(i).body, self.kind(j).body];
@@ -357,8 +388,40 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 
+    /// Adds what the noise has given to the velocity of a particle since it was last asked for.
+    fn heat(&mut self, particle: usize) {
+        if self.gas.heating == 0.0 {
+            return;
+        }
+        let [x, y, z] = normals([self.draw(), self.draw()]);
+        let noise = self.gas.noise(self.kind(particle).body.inverse_mass);
+        let p = &mut self.particles[particle];
+        let deviation = (noise * (self.clock - p.heated)).sqrt();
+        p.velocity = p.velocity + Vector::new(x, y, z) * deviation;
+        p.heated = self.clock;
+    }
+
+    /// Heats all particles up to now, and takes off the velocity that this gave to their centre of mass.
+    fn heat_all(&mut self) {
+        if self.gas.heating == 0.0 {
+            return;
+        }
+        let (mut momentum, mut mass) = (Vector::default(), 0.0);
+        for i in 0..self.particles.len() {
+            self.heat(i);
+            let own = self.kind(i).body.mass();
+            momentum = momentum + self.particles[i].velocity * own;
+            mass += own;
+        }
+        let mean = momentum / mass;
+        for p in &mut self.particles {
+            p.velocity = p.velocity - mean;
+        }
+    }
+
     /// Adds a row: what has happened, and the moments of each kind now.
     fn look(&mut self, rows: &mut Vec<f64>) {
+        self.heat_all();
         rows.extend(self.whole.row(self.clock));
         let mut start = 0;
         for (kind, &end) in self.gas.kinds.iter().zip(&self.ends) {

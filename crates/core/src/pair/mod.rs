@@ -10,5 +10,5 @@ pub use encounter::{Ending, Hit, Outcome, PairState, Trouble, encounter, narrowe
 pub use partner::Partner;
 pub(crate) use run::failed;
 pub use run::{ENCOUNTER, Encountered, HIT, PairTable, PairVariable};
-pub(crate) use sample::{Draws, approach};
+pub(crate) use sample::{Draws, approach, normals};
 pub use sample::{Encounters, Meeting};

@@ -11,6 +11,14 @@ use crate::random::of_encounter;
 use crate::simd::elementary::{ln, sincos};
 use std::f64::consts::{PI, TAU};
 
+/// Three normal numbers from uniform ones in [0, 1), by G. E. P. Box and M. E. Muller (1958).
+#[inline(always)]
+pub(crate) fn normals([(a, b), (c, d)]: [(f64, f64); 2]) -> [f64; 3] {
+    let ((s, t), (u, _)) = (sincos(TAU * b), sincos(TAU * d));
+    let [p, q] = [a, c].map(|x| (-2.0 * ln(1.0 - x)).sqrt());
+    [p * s, p * t, q * u]
+}
+
 /// The velocities with which two bodies meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Meeting {
@@ -229,13 +237,10 @@ impl Draws {
         of_encounter(self.seed, self.number, self.draw - 1)
     }
 
-    /// Three normal numbers, by G. E. P. Box and M. E. Muller (1958).
+    /// Three normal numbers.
     #[inline(always)]
     pub fn normals(&mut self) -> [f64; 3] {
-        let ((a, b), (c, d)) = (self.pair(), self.pair());
-        let ((s, t), (u, _)) = (sincos(TAU * b), sincos(TAU * d));
-        let [p, q] = [a, c].map(|x| (-2.0 * ln(1.0 - x)).sqrt());
-        [p * s, p * t, q * u]
+        normals([self.pair(), self.pair()])
     }
 
     /// ω, in the axes of space, of a Maxwellian with a temperature about each principal axis.
