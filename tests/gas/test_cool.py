@@ -181,3 +181,62 @@ def test_refused_by_name(name: str) -> None:
 def test_bodies_that_are_not_their_hull_are_refused() -> None:
     with pytest.raises(ValueError, match=r"^body"):
         rs.gas.cool(rs.Ring(outer=3e-3, inner=1e-3, height=1e-3), ELASTIC, translational_temperature=1.0)
+
+
+def test_a_run_is_continued_from_its_state() -> None:
+    """Energies at the end of one run are those at the beginning of the next, and Haff's law goes on."""
+    law = rs.Frictionless(normal=0.9)
+    first = rs.gas.cool(
+        unit(1.0), law, particles=4000, collisions=5, translational_temperature=1.0, record="state"
+    )
+    then = rs.gas.cool(unit(1.0), law, collisions=5, state=first, seed=2)
+    for name in ("translational_temperature", "rotational_temperature", "axis_temperature", "a20", "a11"):
+        np.testing.assert_allclose(then[name][0], first[name][-1], rtol=1e-12)
+    whole = rs.gas.cool(unit(1.0), law, particles=4000, collisions=10, translational_temperature=1.0, seed=3)
+    for name in ("translational_temperature", "rotational_temperature"):
+        error = float(np.hypot(then[f"{name}_error"][-1], whole[f"{name}_error"][-1]))
+        assert abs(float(then[name][-1] - whole[name][-1])) < 4.5 * error
+
+
+def test_the_state_of_a_mixture() -> None:
+    bodies = [unit(0.0), unit(1.0)]
+    law = rs.Frictionless(normal=0.8)
+    first = rs.gas.cool(
+        bodies, law, particles=[400, 200], collisions=3, translational_temperature=[1.0, 2.0], record="state"
+    )
+    then = rs.gas.cool(bodies, law, collisions=1, state=first, seed=2)
+    np.testing.assert_allclose(
+        then["translational_temperature"].isel(time=0),
+        first["translational_temperature"].isel(time=-1),
+        rtol=1e-12,
+    )
+    squares = (first["velocity"] ** 2).sum("component").groupby(first["particle_species"]).mean()
+    np.testing.assert_allclose(squares / 3, first["translational_temperature"].isel(time=-1), rtol=1e-12)
+
+
+def state(**changes: Any) -> xr.Dataset:
+    variables: dict[str, Any] = {
+        "velocity": (("particle", "component"), np.ones((40, 3))),
+        "angular_velocity": (("particle", "component"), np.zeros((40, 3))),
+        "attitude": (("particle", "quaternion"), np.tile([1.0, 0.0, 0.0, 0.0], (40, 1))),
+    }
+    return xr.Dataset(variables | changes)
+
+
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [
+        ({"state": 3}, "state = 3: must be a Dataset of velocity"),
+        ({"state": state().drop_vars("attitude")}, "state lacks attitude"),
+        ({"state": state(velocity=(("particle", "component"), np.zeros((40, 3))))}, r"state.velocity = 0"),
+        ({"state": state(attitude=(("particle", "quaternion"), np.ones((40, 4))))}, "unit quaternions"),
+        ({"state": state(), "batches": 7}, "as many in each of 7 batches"),
+        ({"state": state(), "particles": 40}, "particles: given beside state"),
+        ({"state": state(), "translational_temperature": 1.0}, "translational_temperature: given beside"),
+        ({}, "translational_temperature: missing"),
+        ({"translational_temperature": 1.0, "record": "all"}, "record = 'all'"),
+    ],
+)
+def test_states_that_are_none(given: dict[str, Any], text: str) -> None:
+    with pytest.raises(ValueError, match=text):
+        rs.gas.cool(unit(0.0), ELASTIC, **given)

@@ -44,8 +44,9 @@ def test_the_power_goes_in() -> None:
 def test_spheres_become_steady(normal: float) -> None:
     """Where collisions take the power, with the second Sonine coefficient of van Noije and Ernst.
 
-    T. P. C. van Noije and M. H. Ernst, Granular Matter 1, 57 (1998): a₂ = 16(1 - ε)(1 - 2ε²)/(73 + 56d - 24dε - 105ε + 30(1 - ε)ε²), d = 3; a
-    sphere of radius 1 and mass 1 meets 16√(πT) others in a second, and each takes (1 - ε²)T/2 of its energy.
+    T. P. C. van Noije and M. H. Ernst, Granular Matter 1, 57 (1998), for d = 3: a₂ is 16(1 - ε)(1 - 2ε²) over
+    73 + 56d - 24dε - 105ε + 30(1 - ε)ε². A sphere of radius 1 and mass 1 meets 16√(πT) others in a second,
+    and each takes (1 - ε²)T/2 of its energy.
     """
     a2 = 16 * (1 - normal) * (1 - 2 * normal**2) / (241 - 177 * normal + 30 * (1 - normal) * normal**2)
     power = 8 * math.sqrt(math.pi) * (1 - normal**2) * (1 + 3 * a2 / 16)  # that keeps T = 1

@@ -4,9 +4,9 @@ use crate::bodies::Dropped;
 use crate::errors::python_error;
 use crate::laws::Law;
 use crate::{resources, watch};
-use numpy::{IntoPyArray, PyArray3, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
-use restitution_core::gas::{GAS_KIND, GAS_WHOLE, Gas, Phase, Species};
+use restitution_core::gas::{GAS_KIND, GAS_WHOLE, Gas, Phase, STATE, Species};
 use restitution_core::pair::Partner;
 
 /// Density, length, statistics and seed of a run.
@@ -18,6 +18,7 @@ struct Course {
     batches: usize,
     collisions: f64,
     heating: f64,
+    keep: bool,
     samples: usize,
     seed: u64,
 }
@@ -25,23 +26,31 @@ struct Course {
 /// A body, how many there are, their temperatures of translation and of rotation about each principal axis, and whether contacts turn them about it.
 type Counted<'py> = (Dropped<'py>, usize, f64, [f64; 3], [bool; 3]);
 
-/// Follows a gas. Returns rows of `GAS_WHOLE` and,
-/// for each kind, `GAS_KIND`, by batch and look, and the `KeyboardInterrupt` that cut the run short, if any.
+type Tables<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray2<f64>>);
+
+/// Follows a gas, from the given states if there are any. Returns rows of `GAS_WHOLE` and, for each kind, `GAS_KIND`, by batch and look, with the states of
+/// the particles at the end, and the `KeyboardInterrupt` that cut the run short, if any.
 #[pyfunction]
+#[pyo3(signature = (kinds, law, course, threads, given, progress))]
 fn cool<'py>(
     py: Python<'py>,
     kinds: Vec<Counted<'py>>,
     law: &Law,
     course: Course,
     threads: usize,
+    given: Option<PyReadonlyArray2<'py, f64>>,
     progress: Option<Bound<'py, PyAny>>,
-) -> PyResult<(Bound<'py, PyArray3<f64>>, Option<PyErr>)> {
+) -> PyResult<(Tables<'py>, Option<PyErr>)> {
     let of = |(body, ..): &Counted<'_>| Partner::new("body", body.body());
     let bodies: Vec<Partner> = kinds
         .iter()
         .map(of)
         .collect::<Result<_, _>>()
         .map_err(python_error)?;
+    let given: Option<Vec<[f64; STATE]>> = match &given {
+        Some(states) => Some(states.as_slice()?.as_chunks().0.to_vec()),
+        None => None,
+    };
     let gas = Gas {
         kinds: kinds
             .iter()
@@ -65,15 +74,19 @@ fn cool<'py>(
         batches: course.batches,
         collisions: course.collisions,
         heating: course.heating,
+        keep: course.keep,
+        given: given.as_deref(),
         samples: course.samples,
         seed: course.seed,
     };
     let (law, resources) = (law.law(), resources(threads)?);
-    let (rows, interrupted) =
+    let ((rows, states), interrupted) =
         watch::run(py, progress, |monitor| gas.cool(&law, resources, monitor))?;
     let width = GAS_WHOLE.len() + bodies.len() * GAS_KIND.len();
     let shape = [course.batches, course.samples + 1, width];
-    Ok((rows.into_pyarray(py).reshape(shape)?, interrupted))
+    let states = states.into_flattened().into_pyarray(py);
+    let states = states.reshape([states.len()? / STATE, STATE])?;
+    Ok(((rows.into_pyarray(py).reshape(shape)?, states), interrupted))
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -11,13 +11,16 @@ import numpy as np
 import xarray as xr
 
 from restitution import _core
-from restitution._internal.arrays import FloatArray, positive, real, whole
-from restitution._internal.parameters import ParameterError, wrong
+from restitution._internal.arrays import FloatArray, IntArray, positive, real, whole
+from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution._internal.resources import check_memory, checked_threads, progress_bar
-from restitution.bodies import AnyBody, Body
+from restitution.bodies import AnyBody, Body, RigidBody
 from restitution.laws import CollisionLaw, Frictionless
+from restitution.pair._encounters import read_states
 
 Phase = Literal["time", "uniform"]
+Record = Literal["moments", "state"]
+_STATE = {"velocity": 3, "angular_velocity": 3, "attitude": 4}
 
 _PARTICLE = 96
 """Bytes."""
@@ -53,13 +56,15 @@ def cool(
     body: AnyBody | Sequence[AnyBody],
     law: CollisionLaw,
     *,
-    particles: int | Sequence[int] = 100_000,
+    particles: int | Sequence[int] | None = None,
     collisions: float = 50.0,
-    translational_temperature: float | Sequence[float],
+    translational_temperature: float | Sequence[float] | None = None,
     rotational_temperature: float | Sequence[float] | None = None,
     spin_temperature: float | Sequence[float] | None = None,
     number_density: float = 1.0,
     heating: float = 0.0,
+    state: xr.Dataset | None = None,
+    record: Record = "moments",
     phase: Phase = "time",
     samples: int = 50,
     batches: int = 10,
@@ -82,12 +87,13 @@ def cool(
         The particles; of a mixture each of its species.
     law : Frictionless or another law
         The collision law, of every contact.
-    particles : int or sequence of int
-        How many there are, of each species; at least 2 for each of the batches.
+    particles : int or sequence of int, optional
+        How many there are, of each species; at least 2 for each of the batches. 100 000 if left out.
     collisions : float
         Encounters with contact that a particle has had at the end, on average.
-    translational_temperature : float or sequence of float
-        T_tr at the beginning, in J, of each species: the mean energy of translation is 3T_tr/2.
+    translational_temperature : float or sequence of float, optional
+        T_tr at the beginning, in J, of each species: the mean energy of translation is 3T_tr/2. Needed
+        without `state`.
     rotational_temperature : float or sequence of float, optional
         T_rot in J: T_rot/2 is the mean energy of rotation about each principal axis; T_tr if left out.
     spin_temperature : float or sequence of float, optional
@@ -100,6 +106,14 @@ def cool(
         The mean power that a particle receives from a noise of forces, white in time, in W: in a time t a
         component of its velocity gains a normal number of variance 2 heating t/3m. The mean velocity of the
         gas is kept at 0. Where collisions take as much, the gas is steady.
+    state : xarray.Dataset, optional
+        Begin with these particles instead of Maxwellians: what a run with `record` "state" gave, or one's own
+        ``velocity`` (m/s) and ``angular_velocity`` (rad/s) over (particle, component) and ``attitude``, unit
+        quaternions (w, x, y, z), over (particle, quaternion). `particles` and temperatures are left out. The
+        batches take as many each, one after the other; those of a mixture as many of each species, in its
+        order, which ``particle_species`` numbers from 0. To continue a run give another seed.
+    record : {"moments", "state"}
+        With "state" also velocity, angular velocity and attitude of every particle at the end.
     phase : {"time", "uniform"}
         Bodies turn between encounters for the time that passes, or so far that the phase of their rotation is
         uniform, as in the limit of low density.
@@ -146,7 +160,24 @@ def cool(
     >>> bool(data["translational_temperature"][-1] < 0.5e-9)
     True
     """
-    kinds = _kinds(body, law, particles, translational_temperature, rotational_temperature, spin_temperature)
+    if not isinstance(record, str) or record not in get_args(Record):
+        raise ParameterError(wrong("record", record, "'moments' or 'state'"))
+    number = whole("batches", batches, 2, 10**4)
+    warm = {
+        "translational_temperature": translational_temperature,
+        "rotational_temperature": rotational_temperature,
+        "spin_temperature": spin_temperature,
+    }
+    given = None
+    if state is not None:
+        for name, value in {"particles": particles, **warm}.items():
+            if value is not None:
+                raise ParameterError(Problem(name, ": given beside state, which says it already"))
+        given = np.concatenate(read_states("state", state, _STATE, particle=None), axis=1)
+        particles, warm = _of_state(body, state, given, number)
+    elif translational_temperature is None:
+        raise ParameterError(Problem("translational_temperature", ": missing; must be a number > 0 (J)"))
+    kinds = _kinds(body, law, 100_000 if particles is None else particles, *warm.values())
     if not isinstance(law, CollisionLaw):
         raise ParameterError(wrong("law", law, "a collision law"))
     if not isinstance(phase, str) or phase not in get_args(Phase):
@@ -154,10 +185,11 @@ def cool(
     course: dict[str, Any] = {
         "number_density": positive("number_density", number_density, "m-3"),
         "uniform": phase == "uniform",
-        "batches": whole("batches", batches, 2, 10**4),
+        "batches": number,
         "heating": real(
             "heating", heating, "a finite number >= 0 (W)", lambda p: 0.0 <= p < math.inf, unit="W"
         ),
+        "keep": record == "state",
         "collisions": real("collisions", collisions, "a number in (0, 10⁹]", lambda x: 0.0 < x <= 1e9),
         "samples": whole("samples", samples, 1, 10**6),
         "seed": whole("seed", seed, 0, 2**64 - 1),
@@ -166,14 +198,18 @@ def cool(
         if kind.particles < 2 * batches:
             raise ParameterError(wrong("particles", kind.particles, f">= {2 * batches}, 2 for each batch"))
     total = sum(kind.particles // batches * batches for kind in kinds)
-    check_memory(total, _PARTICLE)
+    check_memory(total, _PARTICLE * (2 if record == "state" else 1))
     rows = [(kind.body.compiled, *kind[1:]) for kind in kinds]
     expected = round(course["collisions"] * total / 2)
     with progress_bar("gas", expected, "collisions", show=progress) as tell:
-        table, interrupted = _core.cool(rows, law.compiled, course, checked_threads(threads), tell)
+        (table, last), interrupted = _core.cool(
+            rows, law.compiled, course, checked_threads(threads), given, tell
+        )
     if interrupted:
         raise interrupted
     data = _dataset(kinds, table, total)
+    if record == "state":
+        data = data.assign(_state(kinds, last, number))
     data.attrs |= {
         "law": str(law),
         "seed": seed,
@@ -188,12 +224,17 @@ def cool(
     return data
 
 
-def _kinds(
-    body: Any, law: Any, particles: Any, translational: Any, rotational: Any, spin: Any
-) -> list[_Kind]:
+def _bodies(body: Any) -> list[Any]:
     bodies = list(body) if isinstance(body, list | tuple) else [body]
     if not bodies or not all(isinstance(one, AnyBody) for one in bodies):
         raise ParameterError(wrong("body", body, "a body, or a sequence of them"))
+    return bodies
+
+
+def _kinds(
+    body: Any, law: Any, particles: Any, translational: Any, rotational: Any, spin: Any
+) -> list[_Kind]:
+    bodies = _bodies(body)
 
     def each(name: str, value: Any) -> list[Any]:
         if not isinstance(body, list | tuple):
@@ -220,6 +261,54 @@ def _kinds(
         turned = (True, True, not (isinstance(one, Body) and isinstance(law, Frictionless)))
         kinds.append(_Kind(one, count, t, (about, about, along), turned))
     return kinds
+
+
+def _order(counts: Sequence[int], batches: int) -> IntArray:
+    """Return the number of the species of each particle."""
+    return np.tile(np.repeat(np.arange(len(counts)), [count // batches for count in counts]), batches)
+
+
+def _of_state(body: Any, state: xr.Dataset, given: FloatArray, batches: int) -> tuple[Any, dict[str, Any]]:
+    """Return the numbers of particles of a state, and about its temperatures, which the core checks."""
+    several, bodies = isinstance(body, list | tuple), _bodies(body)
+    which = np.zeros(len(given), dtype=np.int64)
+    if several and "particle_species" in state:
+        which = state["particle_species"].to_numpy()
+    counts = [int(np.sum(which == number)) for number in range(len(bodies))]
+    if len(given) % batches or min(counts) < batches or not np.array_equal(which, _order(counts, batches)):
+        text = f" has {len(given)} particles: must be as many in each of {batches} batches"
+        raise ParameterError(Problem("state", text + ", and of a mixture of each species, in its order"))
+    warm: dict[str, list[float]] = {"translational_temperature": [], "rotational_temperature": []}
+    for number, one in enumerate(bodies):
+        speed, spin = (np.mean(given[which == number, start : start + 3] ** 2) for start in (0, 3))
+        if speed == 0.0:
+            raise ParameterError(
+                wrong("state.velocity", 0.0, "other than 0 for some particle of each species")
+            )
+        moment = max(
+            one.principal_moments
+            if isinstance(one, RigidBody)
+            else (one.axial_inertia, one.transverse_inertia)
+        )
+        warm["translational_temperature"].append(float(one.mass * speed))
+        warm["rotational_temperature"].append(float(moment * spin))
+    if not several:
+        return counts[0], {name: values[0] for name, values in warm.items()} | {"spin_temperature": None}
+    return counts, {**warm, "spin_temperature": None}
+
+
+def _state(kinds: Sequence[_Kind], last: FloatArray, batches: int) -> dict[str, Any]:
+    variables: dict[str, Any] = {}
+    start = 0
+    for (name, parts), unit in zip(_STATE.items(), ("m s-1", "rad s-1", "1"), strict=True):
+        dims = ("particle", "component" if parts == 3 else "quaternion")
+        about = {"long_name": f"{name.replace('_', ' ')} at the end, in the axes of space", "units": unit}
+        variables[name] = (dims, last[:, start : start + parts], about)
+        start += parts
+    if len(kinds) > 1:
+        order = _order([kind.particles for kind in kinds], batches)
+        variables["particle_species"] = ("particle", order, {"long_name": "number of the species"})
+    return variables
 
 
 def _temperature(name: str, value: Any) -> float:

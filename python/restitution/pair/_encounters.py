@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias, get_args
 
@@ -319,31 +320,38 @@ def _described(pairs: Pairs) -> dict[str, Any]:
 
 def _rows(states: xr.Dataset, *, plane: bool) -> FloatArray:
     """Take given pairs as rows of position, velocity, ω and attitude of each body."""
-    if not isinstance(states, xr.Dataset):
-        raise ParameterError(wrong("states", states, "a Dataset of " + ", ".join(_STATE)))
-    columns = []
-    for name, parts in _STATE.items():
-        last = "component" if parts == 3 else "quaternion"
-        if name not in states:
-            raise ParameterError(Problem("states", f" lacks {name}: must have {', '.join(_STATE)}"))
-        needed = ("encounter", "particle", last)
-        if set(states[name].dims) != set(needed):
-            text = f" has dimensions {states[name].dims}: must be ({', '.join(needed)})"
-            raise ParameterError(Problem(f"states.{name}", text))
-        values = states[name].transpose(*needed).to_numpy()
-        if values.shape[1:] != (2, parts) or len(values) == 0:
-            text = f" has the shape {values.shape}: must be (encounters, 2, {parts})"
-            raise ParameterError(Problem(f"states.{name}", text))
-        columns.append(reals(f"states.{name}", values, "finite numbers"))
-    lengths = np.linalg.norm(columns[-1], axis=-1)
-    check_each("states.attitude", lengths, np.abs(lengths - 1.0) < 1e-9, "unit quaternions, of length 1")
+    columns = read_states("states", states, _STATE, encounter=None, particle=2)
     if plane:
         still = [columns[0][:, 1], columns[1][:, 1], columns[2][:, 1], columns[3][:, 1, 1:]]
         names = list(_STATE)
         for name, values in zip(names, still, strict=True):
             check_each(f"states.{name}", values, values == 0.0, "0 of the plane, z = 0, which does not move")
+    return np.ascontiguousarray(np.concatenate(columns, axis=-1).reshape(len(columns[0]), -1))
+
+
+def read_states(what: str, states: Any, parts: Mapping[str, int], **sizes: int | None) -> list[FloatArray]:
+    """Take these variables of states, the last a unit quaternion, over dimensions of these sizes."""
+    if not isinstance(states, xr.Dataset):
+        raise ParameterError(wrong(what, states, "a Dataset of " + ", ".join(parts)))
+    columns = []
+    for name, count in parts.items():
+        if name not in states:
+            raise ParameterError(Problem(what, f" lacks {name}: must have {', '.join(parts)}"))
+        needed = (*sizes, "component" if count == 3 else "quaternion")
+        if set(states[name].dims) != set(needed):
+            text = f" has dimensions {states[name].dims}: must be ({', '.join(needed)})"
+            raise ParameterError(Problem(f"{what}.{name}", text))
+        values = states[name].transpose(*needed).to_numpy()
+        shape = (*sizes.values(), count)
+        if values.size == 0 or any(b not in (None, a) for a, b in zip(values.shape, shape, strict=True)):
+            text = ", ".join(f"{dim}s" if b is None else str(b) for dim, b in zip(needed, shape, strict=True))
+            problem = f" has the shape {values.shape}: must be ({text})"
+            raise ParameterError(Problem(f"{what}.{name}", problem))
+        columns.append(reals(f"{what}.{name}", values, "finite numbers"))
+    lengths = np.linalg.norm(columns[-1], axis=-1)
+    check_each(f"{what}.attitude", lengths, np.abs(lengths - 1.0) < 1e-9, "unit quaternions, of length 1")
     columns[-1] = columns[-1] / lengths[..., np.newaxis]
-    return np.ascontiguousarray(np.concatenate(columns, axis=-1).reshape(len(lengths), -1))
+    return columns
 
 
 def _dataset(rows: FloatArray, hits: FloatArray | None, *, full: bool) -> xr.Dataset:

@@ -43,6 +43,9 @@ const FASTEST: f64 = 1e6;
 /// The energy of an encounter, relative to that before, above which it is created and not rounding.
 const CREATED: f64 = 1e-12;
 
+/// The numbers of the state of a particle: velocity, ω and attitude (w, x, y, z), in the axes of space.
+pub const STATE: usize = 10;
+
 /// Bodies of one kind. SI units, or any coherent ones.
 #[derive(Debug, Clone)]
 pub struct Species<'a> {
@@ -82,6 +85,10 @@ pub struct Gas<'a> {
     pub collisions: f64,
     /// The mean power that a particle receives from a noise of forces.
     pub heating: f64,
+    /// The state of every particle at the beginning, instead of Maxwellians: of batch after batch, and in each of kind after kind.
+    pub given: Option<&'a [[f64; STATE]]>,
+    /// Whether the states at the end are kept.
+    pub keep: bool,
     /// Looks at the gas after the first.
     pub samples: usize,
     /// The seed.
@@ -99,7 +106,8 @@ struct Particle {
 }
 
 impl Gas<'_> {
-    /// Follows all batches. Returns [`GAS_WHOLE`] and, for each kind, [`GAS_KIND`], of every look at each batch; all zero after a run that was cancelled.
+    /// Follows all batches. Returns [`GAS_WHOLE`] and, for each kind, [`GAS_KIND`], of every look at each batch, and if they are kept
+    /// the states of all particles at the end, in the order of `given`; all zero after a run that was cancelled.
     ///
     /// # Errors
     /// [`Error::Parameter`], and if an encounter cannot be followed.
@@ -108,20 +116,30 @@ impl Gas<'_> {
         law: &Law<'_>,
         resources: Resources,
         monitor: &Monitor,
-    ) -> Result<Vec<f64>, Error> {
+    ) -> Result<(Vec<f64>, Vec<[f64; STATE]>), Error> {
         self.check()?;
         let next = AtomicUsize::new(0);
         let size = (self.samples + 1) * (GAS_WHOLE.len() + self.kinds.len() * GAS_KIND.len());
-        let rows = Mutex::new(memory::zeros("looks at a gas", size * self.batches)?);
+        let each = self.each();
+        let kept = if self.keep { each * self.batches } else { 0 };
+        let rows = memory::zeros("looks at a gas", size * self.batches)?;
+        let states = memory::filled("states of a gas", [0.0; STATE], kept)?;
+        let results = Mutex::new((rows, states));
         let work = |_| {
             loop {
                 let batch = next.fetch_add(1, Ordering::Relaxed);
                 if batch >= self.batches || monitor.is_cancelled() {
                     return Ok(());
                 }
-                let found = Batch::new(self, batch)?.run(law, monitor)?;
-                let mut rows = rows.lock().expect("nobody panics who holds it");
+                let mut gas = Batch::new(self, batch)?;
+                let found = gas.run(law, monitor)?;
+                let mut results = results.lock().expect("nobody panics who holds it");
+                let (rows, states) = &mut *results;
                 rows[batch * size..][..found.len()].copy_from_slice(&found);
+                let kept = states.iter_mut().skip(batch * each);
+                for (state, particle) in kept.zip(&gas.particles) {
+                    *state = particle.state();
+                }
             }
         };
         let ended: Result<Vec<()>, Error> = resources
@@ -129,7 +147,15 @@ impl Gas<'_> {
             .into_iter()
             .collect();
         ended?;
-        Ok(rows.into_inner().expect("nobody panics who holds it"))
+        Ok(results.into_inner().expect("nobody panics who holds it"))
+    }
+
+    /// Particles of a batch.
+    fn each(&self) -> usize {
+        self.kinds
+            .iter()
+            .map(|kind| kind.particles / self.batches)
+            .sum()
     }
 
     /// The variance that a component of the velocity gains in a time, over the time.
@@ -189,17 +215,20 @@ struct Batch<'a> {
 impl<'a> Batch<'a> {
     /// Attitudes uniform on SO(3), velocities and ω of Maxwellians, of which the mean is taken off and whose energies are those of the temperatures.
     fn new(gas: &'a Gas<'a>, number: usize) -> Result<Self, Error> {
-        let count: usize = gas
-            .kinds
-            .iter()
-            .map(|kind| kind.particles / gas.batches)
-            .sum();
+        let count = gas.each();
         let mut particles = memory::empty("particles of a gas", count)?;
         let mut ends = Vec::new();
         for (order, kind) in gas.kinds.iter().enumerate() {
             let body = kind.body;
             let start = particles.len();
-            for i in 0..kind.particles / gas.batches {
+            let each = kind.particles / gas.batches;
+            if let Some(given) = gas.given {
+                let own = &given[number * count + start..][..each];
+                particles.extend(own.iter().map(Particle::with));
+                ends.push(particles.len());
+                continue;
+            }
+            for i in 0..each {
                 let index = ((number * gas.kinds.len() + order) as u64) << 40 | i as u64;
                 let mut draws = Draws::new(gas.seed, index);
                 let attitude = draws.attitude();
@@ -243,7 +272,7 @@ impl<'a> Batch<'a> {
         of_gas(self.gas.seed, (self.number as u64) << 48 | self.drawn)
     }
 
-    fn run(mut self, law: &Law<'_>, monitor: &Monitor) -> Result<Vec<f64>, Error> {
+    fn run(&mut self, law: &Law<'_>, monitor: &Monitor) -> Result<Vec<f64>, Error> {
         let gas = self.gas;
         let count = self.particles.len();
         let each = 0.5 * count as f64 * gas.collisions / gas.samples as f64;
@@ -434,6 +463,24 @@ impl<'a> Batch<'a> {
             rows.extend(sums.row((end - start) as f64));
             start = end;
         }
+    }
+}
+
+impl Particle {
+    fn with(&[vx, vy, vz, a, b, c, w, x, y, z]: &[f64; STATE]) -> Self {
+        Self {
+            velocity: Vector::new(vx, vy, vz),
+            attitude: Quaternion::new(w, x, y, z),
+            spin: Vector::new(a, b, c),
+            time: 0.0,
+            heated: 0.0,
+        }
+    }
+
+    fn state(&self) -> [f64; STATE] {
+        let ([vx, vy, vz], q, [a, b, c]) =
+            (self.velocity.parts(), self.attitude, self.spin.parts());
+        [vx, vy, vz, a, b, c, q.w, q.x, q.y, q.z]
     }
 }
 
