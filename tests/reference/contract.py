@@ -116,6 +116,7 @@ FITTING: dict[str, str] = {
     "pair.encounters.spin": "rotational_temperature",
     "flight.ContactTime.of_spheres.ball": "young_modulus poisson_ratio",
     "flight.ContactTime.of_spheres.plate": "young_modulus poisson_ratio",
+    "gas.cool.state": "particles",
     "gas.cool.spin_temperature": "rotational_temperature",
     "gas.cool.batches": "particles",
     "gas.cool.translational_temperature": "rotational_temperature",
