@@ -16,7 +16,7 @@ from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution._internal.resources import check_memory, checked_threads, progress_bar
 from restitution.bodies import AnyBody, Body, RigidBody
 from restitution.laws import CollisionLaw, Frictionless
-from restitution.pair._encounters import read_states
+from restitution.pair.states import read_states
 
 Phase = Literal["time", "uniform"]
 Record = Literal["moments", "state"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias, get_args
 
@@ -17,6 +16,7 @@ from restitution._internal.resources import check_size, checked_threads, progres
 from restitution.bodies import AnyBody
 from restitution.drop.dataset import version_here
 from restitution.laws import CollisionLaw, Law, Viscoelastic
+from restitution.pair.states import read_states
 
 Record: TypeAlias = Literal["encounters", "state", "contacts"]
 _STATE = {"position": 3, "velocity": 3, "angular_velocity": 3, "attitude": 4}
@@ -327,31 +327,6 @@ def _rows(states: xr.Dataset, *, plane: bool) -> FloatArray:
         for name, values in zip(names, still, strict=True):
             check_each(f"states.{name}", values, values == 0.0, "0 of the plane, z = 0, which does not move")
     return np.ascontiguousarray(np.concatenate(columns, axis=-1).reshape(len(columns[0]), -1))
-
-
-def read_states(what: str, states: Any, parts: Mapping[str, int], **sizes: int | None) -> list[FloatArray]:
-    """Take these variables of states, the last a unit quaternion, over dimensions of these sizes."""
-    if not isinstance(states, xr.Dataset):
-        raise ParameterError(wrong(what, states, "a Dataset of " + ", ".join(parts)))
-    columns = []
-    for name, count in parts.items():
-        if name not in states:
-            raise ParameterError(Problem(what, f" lacks {name}: must have {', '.join(parts)}"))
-        needed = (*sizes, "component" if count == 3 else "quaternion")
-        if set(states[name].dims) != set(needed):
-            text = f" has dimensions {states[name].dims}: must be ({', '.join(needed)})"
-            raise ParameterError(Problem(f"{what}.{name}", text))
-        values = states[name].transpose(*needed).to_numpy()
-        shape = (*sizes.values(), count)
-        if values.size == 0 or any(b not in (None, a) for a, b in zip(values.shape, shape, strict=True)):
-            text = ", ".join(f"{dim}s" if b is None else str(b) for dim, b in zip(needed, shape, strict=True))
-            problem = f" has the shape {values.shape}: must be ({text})"
-            raise ParameterError(Problem(f"{what}.{name}", problem))
-        columns.append(reals(f"{what}.{name}", values, "finite numbers"))
-    lengths = np.linalg.norm(columns[-1], axis=-1)
-    check_each(f"{what}.attitude", lengths, np.abs(lengths - 1.0) < 1e-9, "unit quaternions, of length 1")
-    columns[-1] = columns[-1] / lengths[..., np.newaxis]
-    return columns
 
 
 def _dataset(rows: FloatArray, hits: FloatArray | None, *, full: bool) -> xr.Dataset:
