@@ -201,6 +201,18 @@ def test_series_have_a_scatter_between_them() -> None:
     assert alike.errors["restitution"] < 0.4 * found.errors["restitution"]
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("between", [0.0, 0.002])
+def test_the_mean_of_five_drops_is_covered(between: float) -> None:
+    """Of plates that differ and of plates that do not; errors are those of few drops, and so are large."""
+    rng, held = np.random.default_rng(7), 0
+    for seed in range(30):
+        drops = several(0.92 + between * rng.standard_normal(5), 5e-4, 2e-5, seed)
+        found = rs.flight.fit(drops, "constant", scatter="fit")
+        held += abs(found.parameters["restitution"] - 0.92) < 1.645 * found.errors["restitution"]
+    assert held >= 24
+
+
 def test_a_scatter_of_zero_is_not_certain() -> None:
     """Video with 240 frames/s: errors of the times hide a scatter of some 0.003, which the law may have."""
     [one] = several(np.array([0.92]), 0.0, 1.2e-3, 3)

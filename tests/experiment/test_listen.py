@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 import restitution as rs
 from benchmarks.recording import PLATE, recording
 from reference.bouncing import impact_times
+from restitution._internal.parameters import ParameterError, Problem
 from restitution.cli import app
 from restitution.experiment.listen import Setting, analyse
 
@@ -306,3 +307,47 @@ def test_a_law_of_the_speed_is_claimed_only_from_a_difference_of_six(tmp_path: P
             said = analyse(table, given).series[0].sentence(given)
             assert ("The law that fits best" in said) == (differs and mass is not None)
             assert ("It depends on the speed" in said) == (differs and mass is None)
+
+
+def drops(folder: Path, between: float) -> list[Path]:
+    """Write down times of five drops of a round ball, whose ε differs by `between` from plate to plate."""
+    rng = np.random.default_rng(5)
+    paths = []
+    for place, off in enumerate(between * np.array([-1.5, -0.5, 0.0, 0.5, 1.5])):
+        speeds = 1.5 * np.cumprod(0.92 + off + 5e-4 * rng.standard_normal(14))
+        times = np.concatenate([[0.0], np.cumsum(2.0 * speeds / 9.81)]) + rng.normal(0.0, 2e-5, 15)
+        paths.append(typed(folder / f"drop{place}.csv", times))
+    return paths
+
+
+def test_drops_in_several_files_give_one_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One sentence, shape and page; what differs from plate to plate is in the error of the mean."""
+    asked = []
+
+    def posterior(data: list[xr.Dataset], *_: object, **__: object) -> None:
+        asked.append(len(data))
+        raise ParameterError(Problem("data", ": not asked"))
+
+    monkeypatch.setattr("restitution.experiment.listen._shape.posterior", posterior)
+    errors = {}
+    for between in (0.0, 0.002):
+        folder = tmp_path / str(between)
+        folder.mkdir()
+        paths = drops(folder, between)
+        code, said = listen(*paths, "--diameter", 0.006, "--time-error", 2e-5, "--out", folder / "page.html")
+        assert code == 0, said
+        match = re.search(r"of 75 impacts in 5 drops .* is (0\.\d+) ± (0\.\d+),.* between drops", said)
+        assert match is not None, said
+        errors[between] = float(match[2])
+        assert abs(float(match[1]) - 0.92) < 2.0 * errors[between]
+    # The standard deviation of five that differ by 0.0022 is known to four degrees of freedom.
+    assert errors[0.002] == pytest.approx(0.0022 / np.sqrt(5.0) * np.sqrt(2.0), rel=0.3)
+    assert errors[0.0] < 0.5 * errors[0.002]
+    assert asked == [5, 5]
+    page = Page((folder / "page.html").read_text(encoding="utf-8"))
+    for words in ("5 drops together", "drop0.csv", "drop4.csv", "Series 4"):
+        assert words in page.words
+    data = xr.load_dataset(folder / "page.nc")
+    assert data.sizes["impact"] == 75
+    assert np.unique(data.file.values).tolist() == [0, 1, 2, 3, 4]
+    assert np.isnan(data.restitution_covariance.values[5, 20])

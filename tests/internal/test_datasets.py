@@ -49,7 +49,8 @@ def pairs() -> Iterator[tuple[str, Any, Any]]:
     series = analysis.series[0]
     other = replace(series, data=series.data * 2)
     yield "Series", series, other
-    yield "Analysis", analysis, replace(analysis, series=(other,))
+    recording = analysis.recordings[0]._replace(series=(other,))
+    yield "Analysis", analysis, replace(analysis, recordings=(recording,))
     assert series.shape is not None
     draws = xr.DataTree.from_dict({"/posterior": xr.Dataset({"elongation": ("draw", [0.1, 0.2])})})
     inferred = replace(series.shape, draws=draws)

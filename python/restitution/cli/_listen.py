@@ -10,11 +10,12 @@ from restitution.cli._process import say, tell
 
 
 def listen(
-    file: Annotated[
-        Path,
+    files: Annotated[
+        list[Path],
         typer.Argument(
-            metavar="FILE",
-            help="The recording: WAV, FLAC, OGG, MP3, AIFF, M4A with ffmpeg; or times: CSV, TXT, XLSX.",
+            metavar="FILE...",
+            help="A recording: WAV, FLAC, OGG, MP3, AIFF, M4A with ffmpeg; or times: CSV, TXT, XLSX. Several "
+            "files, or several drops in one, are drops of one ball and are combined.",
         ),
     ],
     diameter: Annotated[
@@ -66,7 +67,8 @@ def listen(
     close-ups of onsets, the coefficient of restitution against the speed with
     errors, the laws that fit it, what the times say of the ball's shape, and an
     error budget; beside it a table of all impacts (CSV) and all numbers with their
-    covariance (netCDF).
+    covariance (netCDF). Several drops of a ball give one answer, with a scatter
+    between them as of other plates or hands.
     """
     with errors_in_a_line("netCDF4", "restitution.experiment.listen"):
         from restitution._internal.parameters import renamed
@@ -92,10 +94,10 @@ def listen(
                 contact_uncertainty=contact_error,
                 doubtful=doubtful,
             )
-        analysis = write(file, out, setting, replace=overwrite)
+        analysis = write(files, out, setting, replace=overwrite)
         for warning in analysis.warnings:
             tell(f"note: {warning}")
         if not quiet:
-            for series in analysis.series:
-                say(series.sentence(setting))
+            for sentence in analysis.sentences:
+                say(sentence)
             say(str(out))

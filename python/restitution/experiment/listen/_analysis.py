@@ -3,9 +3,10 @@
 import csv
 import io
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal, NamedTuple, Self
 
 import numpy as np
 import xarray as xr
@@ -139,12 +140,12 @@ class Setting(Parameters):
 
 @dataclass(frozen=True, eq=False)
 class Series(Content):
-    """One series of impacts.
+    """One series of impacts, or all that are combined.
 
     Attributes
     ----------
     number : int
-        Of the series, from 0.
+        Of the series, from 0 over all files.
     heard : Dataset
         Its rows of what `sound.impacts` found.
     data : Dataset
@@ -156,6 +157,8 @@ class Series(Content):
         the errors of the times are not known.
     note : str
         What is known of these errors where the table did not give them.
+    drops : int
+        Number of series that are combined in it.
     """
 
     number: int
@@ -164,6 +167,7 @@ class Series(Content):
     fits: tuple[flight.LawFit, ...]
     shape: Shape | None
     note: str = ""
+    drops: int = 1
 
     @property
     def coefficients(self) -> int:
@@ -178,9 +182,10 @@ class Series(Content):
         error = float(np.nanmedian(self.data.uncertainty.values)) * 1e6
         number = int(np.isfinite(self.data.time).sum())
         timed = f"timed to {digits(error)} µs (standard error)" if error else "with times of unknown error"
+        drops = f" in {self.drops} drops" if self.drops > 1 else ""
         begin = (
-            f"From the {'sound' if heard_in(self.heard) else 'times'} of {number} impacts of a ball of "
-            f"{1e3 * setting.diameter:g} mm diameter, {timed}"
+            f"From the {'sound' if heard_in(self.heard) else 'times'} of {number} impacts{drops} of a ball "
+            f"of {1e3 * setting.diameter:g} mm diameter, {timed}"
         )
         if not known.any():
             return f"{begin}, no coefficient of restitution can be given."
@@ -206,6 +211,8 @@ class Series(Content):
                 f", with a scatter of {with_error(mean.scatter, mean.scatter_error)} from impact to impact"
             )
             text += " that errors of the times do not explain" if error else ""
+        if mean.between_error > 0.0:
+            text += f", and of {with_error(mean.between, mean.between_error)} between drops"
         text += "; air drag is accounted for" if setting.mass is not None else "; air drag is neglected"
         if setting.contact_time is None:
             most = digits(1e6 * setting.contact.uncertainty)
@@ -223,39 +230,70 @@ class Series(Content):
         return f"{text}. {self.note}".rstrip() if self.note else f"{text}."
 
 
+class Recording(NamedTuple):
+    """A file: its path, what `sound.impacts` or `flight.read` found in it, and its series."""
+
+    path: Path
+    heard: xr.Dataset
+    series: tuple[Series, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Analysis(Content):
-    """All results of a recording.
+    """All results of one recording, or of several of one ball.
 
     Attributes
     ----------
-    file : str
-        Name of the recording.
     setting : Setting
         What was known besides.
-    heard : Dataset
-        As `sound.impacts` returned it.
-    series : tuple of Series
-        In the order of time.
+    recordings : tuple of Recording
+    together : Series or None
+        Where there are several drops, what they say together, with a term between them; the shape is inferred
+        from all of them, and that of each is None.
     warnings : tuple of str
         What to be careful about, a sentence or two each; what disagrees comes first.
     """
 
-    file: str
     setting: Setting
-    heard: xr.Dataset
-    series: tuple[Series, ...]
+    recordings: tuple[Recording, ...]
+    together: Series | None
     warnings: tuple[str, ...]
 
+    @property
+    def file(self) -> str:
+        """Names of the files."""
+        return ", ".join(one.path.name for one in self.recordings)
+
+    @property
+    def series(self) -> tuple[Series, ...]:
+        """All series, by file and time."""
+        return tuple(one for recording in self.recordings for one in recording.series)
+
+    @property
+    def sentences(self) -> list[str]:
+        """The result: of all drops together, or of each series."""
+        whole = self.series if self.together is None else (self.together,)
+        return [one.sentence(self.setting) for one in whole]
+
     def dataset(self) -> xr.Dataset:
-        """Put everything into one Dataset over ``impact``; the covariance is that of each series."""
-        rows = self.heard.sizes["impact"]
-        table = self.heard.copy()
+        """Put everything into one Dataset over ``impact``; the covariance is that of each series.
+
+        Of several files, ``file`` is the number of the impact's file, from 0, whose times begin with it.
+        """
+        heard = [one.heard.drop_attrs() for one in self.recordings]
+        table = xr.concat(heard, "impact") if len(heard) > 1 else self.recordings[0].heard.copy()
+        if len(heard) > 1:
+            files = np.repeat(np.arange(len(heard)), [one.sizes["impact"] for one in heard])
+            table["file"] = ("impact", files)
+            table.attrs["files"] = self.file
+            for name, variable in self.recordings[0].heard.variables.items():
+                table[name].attrs = variable.attrs
+        rows = table.sizes["impact"]
         names = ("impact_velocity", "impact_velocity_error", "restitution", "restitution_error")
         columns = {name: np.full(rows, np.nan) for name in names}
         covariance = np.full((rows, rows), np.nan)
         for one in self.series:
-            places = np.flatnonzero((self.heard.series == one.number) & (self.heard.flag != DOUBLED))
+            places = np.flatnonzero((table.series == one.number) & (table.flag != DOUBLED))
             for name in names:
                 columns[name][places] = one.data[name].values
             covariance[np.ix_(places, places)] = one.data.restitution_covariance.values
@@ -281,8 +319,10 @@ class Analysis(Content):
             "restitution_error",
         )
         units = ("s", "s", "m/s", "m/s", "1", "1")
+        several = len(self.recordings) > 1
         writer.writerow(
             [
+                *["file"] * several,
                 "series",
                 "flag",
                 *(f"{name.replace('_', ' ')} ({unit})" for name, unit in zip(names, units, strict=True)),
@@ -294,34 +334,64 @@ class Analysis(Content):
                 continue
             values = [float(one[name]) for name in names]
             numbers = ["" if math.isnan(value) else f"{value:.9g}" for value in values]
-            writer.writerow([int(one.series), FLAGS[int(one.flag)], *numbers])
+            file = [self.recordings[int(one.file)].path.name] if several else []
+            writer.writerow([*file, int(one.series), FLAGS[int(one.flag)], *numbers])
         return text.getvalue()
 
 
-def analyse(file: Path, setting: Setting) -> Analysis:
-    """Listen to a recording, or read a table of times, and fit what is heard.
+def analyse(files: Path | Sequence[Path], setting: Setting) -> Analysis:
+    """Listen to recordings of one ball, or read tables of times, and fit what is heard.
 
     Raises
     ------
     ValueError
         If no series of impacts is heard, or the drop does not go with the first flight.
     OSError
-        If the file cannot be read.
+        If a file cannot be read.
     """
-    file = path_from("file", file)
+    paths = [path_from("file", file) for file in (files if isinstance(files, list | tuple) else [files])]
     checked(setting)
+    found = [_heard(path, setting) for path in paths]
+    number = 0
+    for heard, _ in found:
+        heard["series"] = heard.series + number
+        number = int(heard.series.max()) + 1
+    recordings = tuple(
+        Recording(
+            path, heard, tuple(_series(heard, int(one), setting, told) for one in np.unique(heard.series))
+        )
+        for path, (heard, told) in zip(paths, found, strict=True)
+    )
+    several = [
+        one
+        for each in recordings
+        for one in each.series
+        if one.coefficients >= _FEWEST_FOR_SCATTER and one.fits
+    ]
+    together = _together(several, setting) if len(several) > 1 else None
+    if together is None:
+        recordings = tuple(
+            one._replace(
+                series=tuple(replace(s, shape=_shape([s.data], s.fits, setting)) for s in one.series)
+            )
+            for one in recordings
+        )
+    analysis = Analysis(setting, recordings, together, ())
+    return replace(analysis, warnings=tuple(_warnings(analysis)))
+
+
+def _heard(file: Path, setting: Setting) -> tuple[xr.Dataset, Separation]:
+    """Return the impacts of a file, and what is known of the errors of their times."""
     if file.suffix.lower() in _TABLES:
         heard = flight.read(file, uncertainty=setting.time_uncertainty)
         heard, told = _with_errors(heard, setting)
         heard["series"] = xr.zeros_like(heard.flag, dtype=np.int64)
-    elif setting.time_uncertainty is not None:
+        return heard, told
+    if setting.time_uncertainty is not None:
         raise ParameterError(
             Problem(str(file), ": a recording, in which errors of times are found, not given")
         )
-    else:
-        heard, told = impacts(file), KNOWN
-    series = tuple(_series(heard, int(number), setting, told) for number in np.unique(heard.series))
-    return Analysis(file.name, setting, heard, series, (*_warnings(heard, series, setting), *_lossy(file)))
+    return impacts(file), KNOWN
 
 
 def checked(setting: object) -> None:
@@ -339,15 +409,15 @@ def _with_errors(heard: xr.Dataset, setting: Setting) -> tuple[xr.Dataset, Separ
     """Put the errors of times that came without one into a table, where its coefficients show them."""
     if heard.uncertainty.fillna(0.0).any():
         return heard, KNOWN
-    told = separation([measured_of(_coefficients(heard, 0, setting))])
+    told = separation([measured_of(_coefficients(heard, setting, first=True))])
     errors = np.where(np.isnan(heard.time.values), np.nan, told.timing)
     return heard.assign(uncertainty=("impact", errors, heard.uncertainty.attrs)), told
 
 
 def _series(heard: xr.Dataset, number: int, setting: Setting, told: Separation) -> Series:
     rows = heard.isel(impact=np.flatnonzero(heard.series == number))
-    data = _coefficients(rows, number, setting)
-    if number == 0:
+    data = _coefficients(rows, setting, first=number == heard.series.values[0])
+    if number == heard.series.values[0]:
         _check_drop(data, setting)
     known = int(np.isfinite(data.restitution).sum())
     timed = bool(data.uncertainty.fillna(0.0).any())
@@ -356,30 +426,47 @@ def _series(heard: xr.Dataset, number: int, setting: Setting, told: Separation) 
         fits = _fitted(data, "fit")
     if not any(fit.law == "constant" for fit in fits):
         fits = []
-    ordered = tuple(sorted(fits, key=lambda fit: fit.aic))
-    found = None
-    if timed:
-        found = shape(
-            data,
-            ordered,
-            diameter=setting.diameter,
-            mass=setting.mass,
-            out_of_roundness=setting.out_of_roundness,
-            roughness=setting.roughness,
-            wall=setting.wall,
-            drag=setting.drag,
-            contact=setting.contact,
-        )
-    return Series(number, rows, data, ordered, found, told.words)
+    return Series(number, rows, data, _ordered(fits), None, told.words)
 
 
-def _coefficients(rows: xr.Dataset, number: int, setting: Setting) -> xr.Dataset:
+def _together(several: list[Series], setting: Setting) -> Series:
+    """Combine drops: one fit with a scatter between them, one posterior."""
+    parts = [one.data for one in several]
+    data = xr.concat(
+        [one.drop_dims("other_impact") for one in parts], "impact", combine_attrs="drop_conflicts"
+    )
+    fits = _ordered(_fitted(parts, "fit"))
+    heard = xr.concat([one.heard for one in several], "impact", combine_attrs="override")
+    return Series(0, heard, data, fits, _shape(parts, fits, setting), drops=len(several))
+
+
+def _ordered(fits: list[flight.LawFit]) -> tuple[flight.LawFit, ...]:
+    return tuple(sorted(fits, key=lambda fit: fit.aic))
+
+
+def _shape(drops: list[xr.Dataset], fits: tuple[flight.LawFit, ...], setting: Setting) -> Shape | None:
+    if not all(one.uncertainty.fillna(0.0).any() for one in drops):
+        return None
+    return shape(
+        drops,
+        fits,
+        diameter=setting.diameter,
+        mass=setting.mass,
+        out_of_roundness=setting.out_of_roundness,
+        roughness=setting.roughness,
+        wall=setting.wall,
+        drag=setting.drag,
+        contact=setting.contact,
+    )
+
+
+def _coefficients(rows: xr.Dataset, setting: Setting, *, first: bool) -> xr.Dataset:
     return flight.restitution(
         rows,
         gravity=setting.gravity,
         gravity_uncertainty=setting.gravity_uncertainty,
-        # The drop is that of the first series; another ball, or another drop, made the others.
-        drop_height=setting.drop if number == 0 else None,
+        # The drop is that of the first series of a file; another one made the others.
+        drop_height=setting.drop if first else None,
         drop_height_uncertainty=setting.drop_uncertainty,
         drag=setting.drag,
         contact_time=setting.contact,
@@ -387,7 +474,7 @@ def _coefficients(rows: xr.Dataset, number: int, setting: Setting) -> xr.Dataset
     )
 
 
-def _fitted(data: xr.Dataset, scatter: float | Literal["fit"]) -> list[flight.LawFit]:
+def _fitted(data: xr.Dataset | list[xr.Dataset], scatter: float | Literal["fit"]) -> list[flight.LawFit]:
     """Fit all laws that the number and errors of the coefficients allow."""
     fits = []
     for law in _LAWS:
@@ -431,18 +518,23 @@ def _lossy(file: Path) -> list[str]:
     return [f"{kind} compresses with loss, which moves onsets{but}; record in WAV or FLAC where you can."]
 
 
-def _warnings(heard: xr.Dataset, series: tuple[Series, ...], setting: Setting) -> list[str]:
-    found = []
-    for one in series:
-        if one.shape is not None and one.shape.disagreement:
-            name = f"Series {one.number}: " if len(series) > 1 else ""
-            found.append(f"{name}{one.shape.disagreement}")
-    share = float(heard.attrs.get("clipped_share", 0.0))
-    if share > _CLIPPED:
-        found.append(
-            f"{100 * share:.0f} % of the loud samples are clipped: "
-            "loudness is lost, times are not; record with less gain."
-        )
+def _warnings(analysis: Analysis) -> list[str]:
+    setting, several = analysis.setting, len(analysis.series) > 1
+    shapes = (
+        [("", analysis.together)]
+        if analysis.together
+        else [(_named(one, several), one) for one in analysis.series]
+    )
+    found = [
+        f"{name}{one.shape.disagreement}" for name, one in shapes if one.shape and one.shape.disagreement
+    ]
+    for heard in (one.heard for one in analysis.recordings):
+        share = float(heard.attrs.get("clipped_share", 0.0))
+        if share > _CLIPPED:
+            found.append(
+                f"{100 * share:.0f} % of the loud samples are clipped: "
+                "loudness is lost, times are not; record with less gain."
+            )
     if setting.mass is not None and setting.wall is None:
         density = setting.mass / from_roundness(setting.diameter, 0.0, density=1.0).mass
         if density < _LIGHT:
@@ -450,15 +542,16 @@ def _warnings(heard: xr.Dataset, series: tuple[Series, ...], setting: Setting) -
                 f"The mean density of the ball is {digits(density)} kg/m³: if it is hollow, give the "
                 "thickness of its wall; taken for a full ball, it seems rounder than it is."
             )
-    others = int(heard.attrs.get("other_ball_impacts", 0))
-    if others:
-        found.append(
-            f"A second ball: {others} sounds between the impacts follow one another like those of another "
-            "ball, and enter no fit; record one ball at a time."
-        )
-    for one in series:
+    for heard in (one.heard for one in analysis.recordings):
+        others = int(heard.attrs.get("other_ball_impacts", 0))
+        if others:
+            found.append(
+                f"A second ball: {others} sounds between the impacts follow one another like those of "
+                "another ball, and enter no fit; record one ball at a time."
+            )
+    for one in analysis.series:
         flags = one.heard.flag.values
-        name = f"Series {one.number}: " if len(series) > 1 else ""
+        name = _named(one, several)
         left_out = "doubtful" if setting.doubtful else "doubtful, which no fit takes unless asked"
         for code, what in ((1, left_out), (2, "missed"), (3, "doubled")):
             number = int(np.count_nonzero(flags == code))
@@ -468,4 +561,10 @@ def _warnings(heard: xr.Dataset, series: tuple[Series, ...], setting: Setting) -
         if over:
             words = "above 1: a non-spherical body, or wrong times"
             found.append(f"{name}{over} coefficient{'s' * (over > 1)} {words}.")
-    return found
+        if analysis.together is not None and not (one.fits and one.coefficients >= _FEWEST_FOR_SCATTER):
+            found.append(f"{name}{one.coefficients} coefficients, too few to be combined with the others.")
+    return found + [text for one in analysis.recordings for text in _lossy(one.path)]
+
+
+def _named(one: Series, several: bool) -> str:
+    return f"Series {one.number}: " if several else ""

@@ -1,14 +1,12 @@
 """Pictures of a recording: the waveform with its impacts, and close-ups of onsets."""
 
-from pathlib import Path
-
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 from matplotlib.figure import Figure
 
 from restitution.experiment.flight.times import DOUBLED, DOUBTFUL, FLAGS, GOOD
-from restitution.experiment.listen._analysis import Analysis
+from restitution.experiment.listen._analysis import Recording
 from restitution.experiment.sound.load import load
 from restitution.figures.style import COLORS, PAGE, panels, styled
 
@@ -50,19 +48,19 @@ _LEAST = -12.0
 
 
 @styled
-def waveform(file: Path, analysis: Analysis) -> Figure:
+def waveform(given: Recording) -> Figure:
     """Draw the whole recording with a mark at each impact."""
-    samples, rate = load(file, None)
-    sound = samples[:, analysis.heard.attrs["channel"]]
+    samples, rate = load(given.path, None)
+    sound = samples[:, given.heard.attrs["channel"]]
     figure, [[axes]] = panels(PAGE, 2.4)
     step = max(sound.size // _COLUMNS, 1)
     whole = sound[: sound.size // step * step].reshape(-1, step)
     times = (np.arange(whole.shape[0]) + 0.5) * step / rate
     axes.fill_between(times, whole.min(axis=1), whole.max(axis=1), color="0.6", linewidth=0.3)
     top = float(np.abs(sound).max())
-    flags = analysis.heard.flag.values
+    flags = given.heard.flag.values
     for flag, color in _MARKS.items():
-        at = analysis.heard.time.values[flags == flag]
+        at = given.heard.time.values[flags == flag]
         if at.size:
             axes.vlines(at, 1.05 * top, 1.2 * top, color=color, linewidth=0.8, label=FLAGS[flag])
     axes.set_xlim(0.0, sound.size / rate)
@@ -75,11 +73,11 @@ def waveform(file: Path, analysis: Analysis) -> Figure:
 
 
 @styled
-def close_ups(file: Path, analysis: Analysis) -> Figure:
+def close_ups(given: Recording) -> Figure:
     """Draw a few impacts, from the first to the last, with their onsets and standard errors."""
-    samples, rate = load(file, None)
-    sound = samples[:, analysis.heard.attrs["channel"]]
-    heard = analysis.heard.isel(impact=np.flatnonzero(analysis.heard.flag.values <= DOUBTFUL))
+    samples, rate = load(given.path, None)
+    sound = samples[:, given.heard.attrs["channel"]]
+    heard = given.heard.isel(impact=np.flatnonzero(given.heard.flag.values <= DOUBTFUL))
     chosen = np.unique(np.linspace(0, heard.sizes["impact"] - 1, _CLOSE_UPS).astype(int))
     figure, rows = panels(PAGE, 3.4, 2, 3)
     places = [axes for row in rows for axes in row]

@@ -1,5 +1,6 @@
 """The report as one page that needs nothing else, with a table and a netCDF file beside it."""
 
+from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
@@ -12,7 +13,15 @@ from restitution._internal.files import check, check_apart, path_from, whole_fil
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.text import digits, with_error
 from restitution.experiment.flight.times import DOUBLED, FLAGS
-from restitution.experiment.listen._analysis import Analysis, Series, Setting, analyse, checked, heard_in
+from restitution.experiment.listen._analysis import (
+    Analysis,
+    Recording,
+    Series,
+    Setting,
+    analyse,
+    checked,
+    heard_in,
+)
 from restitution.experiment.listen._figures import close_ups, drawn_shape, waveform
 from restitution.experiment.listen._shape import Shape
 from restitution.figures.report import Section, drawing, page, paragraph, prose, table, text
@@ -21,8 +30,8 @@ _FAR = 10.0
 """Laws that are worse by this, in Akaike's criterion, are in the table and not in the figure."""
 
 
-def write(file: Path, out: Path, setting: Setting, *, replace: bool = False) -> Analysis:
-    """Analyse a recording and write ``out``, and beside it the same name with .csv and .nc.
+def write(files: Path | Sequence[Path], out: Path, setting: Setting, *, replace: bool = False) -> Analysis:
+    """Analyse recordings of a ball and write ``out``, and beside it the same name with .csv and .nc.
 
     Raises
     ------
@@ -31,39 +40,53 @@ def write(file: Path, out: Path, setting: Setting, *, replace: bool = False) -> 
     OSError
         If a file cannot be read or written.
     """
-    file, out, replace = path_from("file", file), path_from("out", out), flag("replace", replace)
+    several = files if isinstance(files, list | tuple) else [files]
+    read = [path_from("file", file) for file in several]
+    out, replace = path_from("out", out), flag("replace", replace)
     if out.suffix.lower() not in (".html", ".htm"):
         raise ParameterError(wrong("out", str(out), "a file that ends with .html"))
     checked(setting)
     beside = [out.with_suffix(suffix) for suffix in (".csv", ".nc")]
     # The times of times.csv may have their page times.html: its table then is times.out.csv.
-    paths = [*(path.with_suffix(f".out{path.suffix}") if path == file else path for path in beside), out]
-    check_apart([file], paths)
+    paths = [*(path.with_suffix(f".out{path.suffix}") if path in read else path for path in beside), out]
+    check_apart(read, paths)
     for path in paths:
         check(path, replace=replace)
-    analysis = analyse(file, setting)
+    analysis = analyse(read, setting)
     csv, nc, html = (whole_file(path, replace=replace) for path in paths)
     with html as page, nc as numbers, csv as table:  # the page takes its place last
         table.write_text(analysis.csv(), encoding="utf-8", newline="")
         put(analysis.dataset(), numbers)
-        page.write_text(_page(file, analysis), encoding="utf-8", newline="")
+        page.write_text(_page(analysis), encoding="utf-8", newline="")
     return analysis
 
 
-def _page(file: Path, analysis: Analysis) -> str:
-    title = "The recording" if heard_in(analysis.heard) else "The times"
-    sections = [Section("recording", title, _recording(file, analysis))]
-    for one in analysis.series:
-        title = "Coefficient of restitution" if len(analysis.series) == 1 else f"Series {one.number}"
-        sections.append(Section(f"series-{one.number}", title, _series(one, analysis.setting)))
-        if one.shape is not None:
-            of = "" if len(analysis.series) == 1 else f" (series {one.number})"
-            sections.append(Section(f"shape-{one.number}", f"Shape of the ball{of}", _shape(one.shape)))
-            sections.append(Section(f"budget-{one.number}", f"Error budget{of}", _budget(one.shape)))
+def _page(analysis: Analysis) -> str:
+    setting, several = analysis.setting, len(analysis.recordings) > 1
+    sections = []
+    if analysis.together is not None:
+        words = f"{analysis.together.drops} drops together"
+        sections.append(Section("together", words, _series(analysis.together, setting, analysis.series)))
+    for place, one in enumerate(analysis.recordings):
+        title = "The recording" if heard_in(one.heard) else "The times"
+        title, key = (one.path.name, f"-{place}") if several else (title, "")
+        sections.append(Section(f"recording{key}", title, _recording(one, setting)))
+    for series in analysis.series:
+        alone = len(analysis.series) == 1
+        title = "Coefficient of restitution" if alone else f"Series {series.number}"
+        parts = _series(series, setting)
+        if analysis.together is not None:
+            parts.insert(0, paragraph(series.sentence(setting)))
+        sections.append(Section(f"series-{series.number}", title, parts))
+    for shown in analysis.series if analysis.together is None else (analysis.together,):
+        if shown.shape is not None:
+            of = f" (series {shown.number})" if analysis.together is None and len(analysis.series) > 1 else ""
+            sections.append(Section(f"shape-{shown.number}", f"Shape of the ball{of}", _shape(shown.shape)))
+            sections.append(Section(f"budget-{shown.number}", f"Error budget{of}", _budget(shown.shape)))
     sections.append(Section("impacts", "All impacts", [_impacts(analysis)]))
     warnings = "".join(f"<li>{text(warning)}</li>" for warning in analysis.warnings)
     careful = f"<ul>{warnings}</ul>" if warnings else ""
-    lead = "".join(paragraph(one.sentence(analysis.setting), "lead") for one in analysis.series)
+    lead = "".join(paragraph(sentence, "lead") for sentence in analysis.sentences)
     return page(
         f"{analysis.file}: impacts and coefficient of restitution",
         f"<h1>{text(analysis.file)}</h1>\n{lead}\n{careful}",
@@ -72,8 +95,7 @@ def _page(file: Path, analysis: Analysis) -> str:
     )
 
 
-def _recording(file: Path, analysis: Analysis) -> list[str]:
-    setting = analysis.setting
+def _recording(given: Recording, setting: Setting) -> list[str]:
     rows = [
         ["diameter", f"{1e3 * setting.diameter:g} mm"],
         ["gravity", f"{with_error(setting.gravity, setting.gravity_uncertainty)} m/s²"],
@@ -93,9 +115,9 @@ def _recording(file: Path, analysis: Analysis) -> list[str]:
     if setting.contact_time is not None:
         touching = f"{with_error(1e6 * contact.at_1_m_s, 1e6 * contact.uncertainty)} µs, accounted for"
     rows.append(["time of contact at 1 m/s", touching])
-    if not heard_in(analysis.heard):
+    if not heard_in(given.heard):
         return [table(["", ""], rows, caption="Set-up")]
-    attrs = analysis.heard.attrs
+    attrs = given.heard.attrs
     rows[:0] = [
         ["sample rate", f"{attrs['rate']:g} Hz"],
         ["channel", str(attrs["channel"])],
@@ -103,18 +125,17 @@ def _recording(file: Path, analysis: Analysis) -> list[str]:
         ["rule for the onset", text(attrs["rule"])],
     ]
     return [
-        drawing(waveform(file, analysis), "The sound against time, with a mark at each impact."),
-        drawing(
-            close_ups(file, analysis), "Onsets, from the first impact to the last, with their standard error."
-        ),
+        drawing(waveform(given), "The sound against time, with a mark at each impact."),
+        drawing(close_ups(given), "Onsets, from the first impact to the last, with their standard error."),
         table(["", ""], rows, caption="Recording and set-up"),
     ]
 
 
-def _series(one: Series, setting: Setting) -> list[str]:
+def _series(one: Series, setting: Setting, drops: Sequence[Series] = ()) -> list[str]:
     parts = []
     if one.coefficients:
-        figure = flight.figure(one.data, *(fit for fit in one.fits if fit.aic < one.fits[0].aic + _FAR))
+        shown = [each.data for each in drops or [one] if each.coefficients]
+        figure = flight.figure(shown, *(fit for fit in one.fits if fit.aic < one.fits[0].aic + _FAR))
         parts.append(drawing(figure, "ε against v with standard errors, and the laws with their bands."))
     if one.fits:
         best = one.fits[0].aic

@@ -54,7 +54,7 @@ class Shape(Content):
 
 
 def shape(
-    data: xr.Dataset,
+    drops: list[xr.Dataset],
     fits: tuple[flight.LawFit, ...],
     *,
     diameter: float,
@@ -65,8 +65,9 @@ def shape(
     drag: Drag | None,
     contact: ContactTime,
 ) -> Shape | None:
-    """Infer the shape of the ball of a series, and budget its errors; None where no law was fitted."""
-    found = _law(fits, data.impact_velocity.values)
+    """Infer a ball's shape from its drops, and budget the errors of one; None where no law was fitted."""
+    data = drops[0]
+    found = _law(fits, np.concatenate([one.impact_velocity.values for one in drops]))
     if found is None:
         return None
     law, apart = found
@@ -77,7 +78,7 @@ def shape(
     if apart <= _APART:
         try:
             draws = posterior(
-                data,
+                drops if len(drops) > 1 else data,
                 law.normal,
                 diameter=diameter,
                 wall=wall,
@@ -115,6 +116,8 @@ def shape(
         raise
     except ParameterError as error:
         return Shape(law, draws, verdict, None, f"No budget of errors: {error}.")
+    if len(drops) > 1:  # whose mean the budget of one drop is not about
+        return Shape(law, draws, verdict, budget, assumed)
     numbers = list(compared(data, fits, budget, _material(draws)))
     return Shape(law, draws, verdict, budget, assumed, disagreement(numbers))
 
