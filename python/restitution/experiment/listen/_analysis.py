@@ -28,7 +28,7 @@ from restitution._internal.text import digits, with_error
 from restitution.bodies import Wall, from_roundness
 from restitution.experiment.flight.chain import measured_of
 from restitution.experiment.flight.separation import KNOWN, Separation, separation
-from restitution.experiment.flight.times import DOUBLED, FLAGS
+from restitution.experiment.flight.times import DOUBLED, DOUBTFUL, FLAGS, GOOD
 from restitution.experiment.listen._shape import Shape, shape
 from restitution.experiment.sound import impacts
 
@@ -357,10 +357,7 @@ def analyse(files: Path | Sequence[Path], setting: Setting) -> Analysis:
         heard["series"] = heard.series + number
         number = int(heard.series.max()) + 1
     recordings = tuple(
-        Recording(
-            path, heard, tuple(_series(heard, int(one), setting, told) for one in np.unique(heard.series))
-        )
-        for path, (heard, told) in zip(paths, found, strict=True)
+        _recording(path, heard, told, setting) for path, (heard, told) in zip(paths, found, strict=True)
     )
     several = [
         one
@@ -414,10 +411,22 @@ def _with_errors(heard: xr.Dataset, setting: Setting) -> tuple[xr.Dataset, Separ
     return heard.assign(uncertainty=("impact", errors, heard.uncertainty.attrs)), told
 
 
-def _series(heard: xr.Dataset, number: int, setting: Setting, told: Separation) -> Series:
+def _recording(path: Path, heard: xr.Dataset, told: Separation, setting: Setting) -> Recording:
+    """Evaluate the series of a file that have three good impacts; if none has, the first says why not."""
+    flags = (GOOD, DOUBTFUL) if setting.doubtful else (GOOD,)
+    good = heard.series.values[np.isin(heard.flag.values, flags)]
+    numbers = [int(one) for one in np.unique(good) if np.count_nonzero(good == one) > 2] or [
+        int(heard.series[0])
+    ]
+    return Recording(
+        path, heard, tuple(_series(heard, one, setting, told, first=one == numbers[0]) for one in numbers)
+    )
+
+
+def _series(heard: xr.Dataset, number: int, setting: Setting, told: Separation, *, first: bool) -> Series:
     rows = heard.isel(impact=np.flatnonzero(heard.series == number))
-    data = _coefficients(rows, setting, first=number == heard.series.values[0])
-    if number == heard.series.values[0]:
+    data = _coefficients(rows, setting, first=first)
+    if first:
         _check_drop(data, setting)
     known = int(np.isfinite(data.restitution).sum())
     timed = bool(data.uncertainty.fillna(0.0).any())
