@@ -11,11 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import restitution as rs
 from restitution import figures as fg
 from restitution.analytic import near_round
+from restitution.figures.style import SITE, Style, colormap, ink
 
 RADIUS, HEIGHT, GRAVITY = 3e-3, 0.06, 9.81
 FIRST = np.sqrt(2 * GRAVITY * (HEIGHT - RADIUS))
@@ -193,10 +195,8 @@ def _percent(off: Floats, *, worst: bool = False) -> str:
 
 
 @fg.styled
-def draw(found: xr.Dataset, rows: list[Row], path: Path) -> None:
+def draw(found: xr.Dataset, rows: list[Row], *, style: Style | None = None) -> Figure:
     """Draw σ against L/R at one speed, the collapse, and where it ends."""
-    import matplotlib.pyplot as plt
-
     figure, [[left, middle, right]] = fg.panels(fg.PAGE, 2.6, 1, 3)
     deltas, normals = found["separation"].values / RADIUS, found["normal"].values
     sigma = np.full((deltas.size, normals.size), np.nan)
@@ -205,12 +205,12 @@ def draw(found: xr.Dataset, rows: list[Row], path: Path) -> None:
         if near.size:
             i, j = np.argmin(np.abs(deltas - row["delta"])), np.argmin(np.abs(normals - row["normal"]))
             sigma[i, j] = row["std"][int(np.argmin(near))] * row["delta"] ** 2
-    colors = plt.get_cmap("viridis")(np.linspace(0.0, 0.92, deltas.size))
+    colors = colormap()(np.linspace(0.0, 0.92, deltas.size))
     for j, normal in enumerate(normals):
         if normal in (0.5, 0.7, 0.9, 0.98):
             left.loglog(deltas, sigma[:, j], "o-", markersize=2.0, label=f"{normal:g}")
-    left.loglog(deltas[:9], 1.5 * deltas[:9] ** 2, "k:", linewidth=0.8)
-    left.loglog(deltas[:9], 1.2 * deltas[:9] ** 1.5, "k--", linewidth=0.6)
+    left.loglog(deltas[:9], 1.5 * deltas[:9] ** 2, ":", color=ink(0.9), linewidth=0.8)
+    left.loglog(deltas[:9], 1.2 * deltas[:9] ** 1.5, "--", color=ink(0.9), linewidth=0.6)
     left.set(xlabel="$L/R$", ylim=(5e-6, 3.0), ylabel=r"$\sigma$ near $v = 0.3$ m/s")
     left.legend(title=r"$\varepsilon_n$")
     for row in rows:
@@ -222,20 +222,20 @@ def draw(found: xr.Dataset, rows: list[Row], path: Path) -> None:
                 row["u"], row["std"] / row["map"], **(style | {"marker": "os"[row["normal"] > 0.9]})
             )
     ends = np.array([0.15, 20.0])
-    middle.loglog(ends, ends, "k-", linewidth=0.6)
+    middle.loglog(ends, ends, "-", color=ink(0.9), linewidth=0.6)
     middle.set(xlabel=r"$\Phi(v/v_0, \varepsilon_n, \kappa)$", ylabel=r"$\sigma / (L/R)^2$")
-    right.axhline(1.0, color="k", linewidth=0.6)
+    right.axhline(1.0, color=ink(0.9), linewidth=0.6)
     right.set(xlabel="$v/v_0$", ylabel=r"$\sigma / (L/R)^2 \Phi$", ylim=(0.0, 1.4))
     for i in range(0, deltas.size, 2):
         middle.plot([], [], "o", color=colors[i], markersize=2.5, label=f"{deltas[i]:.2g}")
-    middle.legend(title="$L/R$", fontsize=5.0)
+    middle.legend(title="$L/R$", fontsize="xx-small")
     for axes, letter in ((left, "(a)"), (middle, "(b)"), (right, "(c)")):
         fg.letter(axes, letter, left=axes is not left)
-    figure.savefig(path, dpi=200)
+    return figure
 
 
 @fg.styled
-def draw_maps(found: xr.Dataset, path: Path) -> None:
+def draw_maps(found: xr.Dataset, *, style: Style | None = None) -> Figure:
     """Draw σ and <ε²>/ε_n² - 1 in the plane of v and L/R, for three ε_n; grey where impacts are few."""
     from matplotlib.colors import LogNorm, SymLogNorm
 
@@ -258,16 +258,16 @@ def draw_maps(found: xr.Dataset, path: Path) -> None:
                 rows,
                 np.where(enough, values, np.nan),
                 norm=norm,
-                cmap="viridis" if line is panels[0] else "RdBu_r",
+                cmap=colormap() if line is panels[0] else "RdBu_r",
                 rasterized=True,
             )
-            axes.set_facecolor("0.85")
+            axes.set_facecolor(ink(0.2))
             axes.set(yscale="log", xlim=(0.0, 1.06), title=rf"$\varepsilon_n = {normal:g}$")
             if line is panels[1]:
                 axes.set_xlabel("$v$ (m/s)")
         line[0].set_ylabel("$L/R$")
         figure.colorbar(image, ax=list(line), label=text)
-    figure.savefig(path, dpi=200)
+    return figure
 
 
 if __name__ == "__main__":
@@ -276,5 +276,9 @@ if __name__ == "__main__":
     print(table(points))
     print("\nexponent of L/R at fixed κ, up to 0.03: {:.3f} ± {:.3f}\n".format(*exponent(points)))
     print(closed_over_map())
-    draw(study, points, folder / "near_round.png")
-    draw_maps(study, folder / "near_round_maps.png")
+    for ground in SITE:
+        for stem, figure in (
+            ("near_round", draw(study, points, style=ground)),
+            ("near_round_maps", draw_maps(study, style=ground)),
+        ):
+            figure.savefig(folder / f"{stem}{ground[4:]}.png", dpi=200)
