@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from restitution.experiment.inference import posterior
     from restitution.explorer import explore
     from restitution.laws import *  # noqa: F403
-    from restitution.pair import Plane
+    from restitution.pair import PairKernel, Plane
     from restitution.study import sweep
 
 __all__ = [
@@ -49,6 +49,7 @@ __all__ = [
     "LoadedSphere",
     "Mesh",
     "NumericalError",
+    "PairKernel",
     "Plane",
     "Plastic",
     "PullWarning",
@@ -109,6 +110,7 @@ _HOMES = {
     "DistanceWarning": "distribution",
     "FluctuatingRestitution": "distribution",
     "NumericalError": "_core",
+    "PairKernel": "pair",
     "Plane": "pair",
     "build_info": "_core",
     "compare": "drop.compare",

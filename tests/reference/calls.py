@@ -74,6 +74,9 @@ def good() -> dict[str, Any]:
             given="rotational_fraction",
             threads=1,
         ),
+        "kernel": rs.PairKernel.learn(
+            body, body, SMOOTH, translational_temperature=1e-9, encounters=100, threads=1
+        ),
         "first": analytic.first_impact(body, law),
         "fit": laplace,
         "counts": fit.Counts.at(found, 0.65),
@@ -151,6 +154,15 @@ CALLS: dict[str, Call] = {
     "pair.encounters": (
         pair.encounters,
         some("body", other=BALL, law=SMOOTH, encounters=5, record="contacts", threads=1, **WARM),
+    ),
+    "PairKernel": (rs.PairKernel, lambda: {"data": good()["kernel"].data}),
+    "PairKernel.learn": (
+        rs.PairKernel.learn,
+        some("body", other=BALL, law=SMOOTH, encounters=30, translational_temperature=1e-9, threads=1),
+    ),
+    "PairKernel.rvs": (
+        rs.PairKernel.rvs,
+        of("kernel", velocity=[0.0, 0.0, -0.1], direction=[0.0, 0.0, 1.0], random_state=1),
     ),
     "pair.rates": (pair.rates, some("body", law=SMOOTH, encounters=20, temperature_ratios=[1.0], threads=1)),
     "flight.ContactTime": (flight.ContactTime, lambda: {"at_1_m_s": 1e-4, "uncertainty": 1e-5}),

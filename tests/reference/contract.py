@@ -37,6 +37,7 @@ RESULTS = {
     *(f"study.{name}" for name in ("Estimate", "Status", "Study")),
     "bodies.Body",
     "laws.Law",
+    "pair.KernelDraw",
     "theory.Rates",
 }
 """Classes that nobody makes but the functions that return them, or that are bases of others."""

@@ -59,6 +59,9 @@ class FluctuatingRestitution(EstimatedDistribution):
     With ``given``, p(ε | v, z) is known as well, see `learn`. A condition that no impact at that speed had is
     refused or taken as the nearest by the same rule.
 
+    ε alone says nothing of the rotation that pays for ε > 1: `PairKernel` draws both, of two bodies or of one
+    and a plane, for the kinetic theory of a gas.
+
     Attributes
     ----------
     data : xarray.Dataset

@@ -300,10 +300,10 @@ def encounters(
         }
     kept = {name: value for name, value in pairs.drawn.items() if value is not None and name != "first"}
     plain = {name: np.ravel(value) if np.ndim(value) else value for name, value in kept.items()}
-    return data.assign_attrs(_described(pairs) | plain)
+    return data.assign_attrs(described(pairs) | plain)
 
 
-def _described(pairs: Pairs) -> dict[str, Any]:
+def described(pairs: Pairs) -> dict[str, Any]:
     """Return title, version, bodies and law as attributes."""
     about: dict[str, Any] = {
         "title": "Encounters of two bodies in free flight",
@@ -332,7 +332,7 @@ def _rows(states: xr.Dataset, *, plane: bool) -> FloatArray:
 def _dataset(rows: FloatArray, hits: FloatArray | None, *, full: bool) -> xr.Dataset:
     """Give the columns of the core their names, dimensions and units."""
     variables: dict[str, Any] = {}
-    for name, values, about in _columns(_core.PAIR_ENCOUNTER, rows):
+    for name, values, about in columns(_core.PAIR_ENCOUNTER, rows):
         if not full and name.startswith(("position", "attitude")):
             continue
         if name == "contacts":
@@ -349,7 +349,7 @@ def _dataset(rows: FloatArray, hits: FloatArray | None, *, full: bool) -> xr.Dat
         number = variables["contacts"][1]
         most = int(number.max(initial=0))
         there = np.arange(most) < number[:, np.newaxis]
-        for name, values, about in _columns(_core.PAIR_HIT, hits):
+        for name, values, about in columns(_core.PAIR_HIT, hits):
             table = np.full((len(number), most, *values.shape[1:]), np.nan)
             table[there] = values
             variables[name] = (["encounter", "contact", "component"][: table.ndim], table, about)
@@ -359,7 +359,7 @@ def _dataset(rows: FloatArray, hits: FloatArray | None, *, full: bool) -> xr.Dat
     return xr.Dataset(variables, coords=coordinates)
 
 
-def _columns(
+def columns(
     table: list[tuple[str, str, str, int, bool]], rows: FloatArray
 ) -> list[tuple[str, Any, dict[str, Any]]]:
     """Take rows apart into variables of shape (rows, particle, component), or of fewer dimensions."""

@@ -1,0 +1,355 @@
+"""Recorded encounters as the collision rule of a simulation whose particles have no shape."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from restitution import _core
+from restitution._internal.arrays import FloatArray, check_each, generator, positive, reals, whole
+from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.resources import check_size, checked_threads
+from restitution.bodies import AnyBody
+from restitution.laws import CollisionLaw
+from restitution.pair._encounters import COLLAPSE, Pairs, Plane, columns, described
+
+_CHUNK = 1 << 16
+"""Encounters that are held at a time."""
+_MANY = 20
+"""The least number of encounters in a bin."""
+
+
+class KernelDraw(NamedTuple):
+    """Results of collisions, as `PairKernel.rvs` draws them.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> rs.pair.KernelDraw._fields
+    ('velocity', 'rotational_change', 'contacts')
+    """
+
+    velocity: FloatArray
+    """Relative velocity of the centres of mass after, shape (..., 3), in m/s."""
+    rotational_change: FloatArray
+    """Change of the rotational energy of each body, shape (..., 2), in J; 0 of a plane."""
+    contacts: npt.NDArray[np.int64]
+    """Contacts of the encounter, shape (...)."""
+
+
+class PairKernel:
+    """p(ε, change of E_rot, deflection | v_n, T_rot/T_tr) of two bodies, as encounters that are drawn again.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        What `learn` found: the `data` of another kernel, or what was saved of it.
+
+    Attributes
+    ----------
+    data : xarray.Dataset
+        Over encounter, those with contact: ``ratio_number``, the place of its T_rot/T_tr among
+        ``temperature_ratio``; ``centre_speed`` v_n at the first contact (m/s); ``velocity_change`` of the
+        relative velocity, along k from the second centre to the first, along the part of the velocity across
+        k, and across both (m/s); ``rotational_energy_before`` and ``rotational_change`` of each body (J);
+        ``contacts``; ``deflection`` (rad); ``restitution_centres`` -(u'·k)/(u·k). Over temperature_ratio,
+        ``encounter_rate``: encounters with contact of a particle at unit density, in m³/s (on a plane on unit
+        area, in m/s). Attributes as those of `encounters`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> body = rs.Dumbbell(radius=1e-3, separation=1e-3)
+    >>> kernel = rs.pair.PairKernel.learn(
+    ...     body, body, rs.Frictionless(normal=0.9), translational_temperature=1e-8, encounters=10_000
+    ... )
+    >>> after = kernel.rvs([[0.0, 0.0, -0.1]], [[0.0, 0.0, 1.0]], temperature_ratio=1.0, random_state=1)
+    >>> after.velocity.shape, after.rotational_change.shape
+    ((1, 3), (1, 2))
+    """
+
+    def __init__(self, data: xr.Dataset) -> None:
+        if not isinstance(data, xr.Dataset) or any(name not in data for name in (*_KEPT, *_RATE)):
+            raise ParameterError(wrong("data", data, "the data of a PairKernel"))
+        rate = _rate_unit(plane=data.attrs.get("other") == "Plane")
+        units = dict.fromkeys(_RATE, rate) | {name: unit for name, (_, _, unit) in _KEPT.items()}
+        for name, unit in units.items():
+            reals(f"data.{name}", data[name], "finite numbers", unit=unit)
+        self.data = data
+        self._ratios = data["temperature_ratio"].to_numpy()
+        which, speeds = data["ratio_number"].to_numpy(), data["centre_speed"].to_numpy()
+        self._bins = []
+        for number in range(len(self._ratios)):
+            rows = np.flatnonzero(which == number)
+            rows = rows[np.argsort(speeds[rows], kind="stable")]
+            count = min(int(data.attrs["bins"]), max(len(rows) // _MANY, 1))
+            starts = np.arange(count + 1) * len(rows) // count
+            self._bins.append((rows, starts, speeds[rows[starts[1:-1]]]))
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return self.data.identical(other.data)
+
+    def __hash__(self) -> int:
+        return hash((type(self), *sorted(self.data.sizes.values())))
+
+    @classmethod
+    def learn(
+        cls,
+        body: AnyBody,
+        other: AnyBody | Plane,
+        law: CollisionLaw,
+        *,
+        translational_temperature: float,
+        temperature_ratios: npt.ArrayLike = (0.5, 1.0, 2.0),
+        encounters: int = 100_000,
+        bins: int = 50,
+        seed: int = 0,
+        threads: int | None = None,
+    ) -> PairKernel:
+        """Follow encounters at several T_rot/T_tr and keep those with contact.
+
+        Parameters
+        ----------
+        body, other : Dumbbell or another body that `encounters` takes
+            The two bodies; `other` may be a `Plane`.
+        law : Law or CustomLaw
+            The collision law.
+        translational_temperature : float
+            T_tr of both bodies, in J.
+        temperature_ratios : array_like
+            T_rot/T_tr, increasing, each >= 0.
+        encounters : int
+            Number of encounters at each ratio, misses among them.
+        bins : int
+            Bins of v_n at each ratio, with equal numbers of encounters; fewer where these are below 20.
+        seed, threads : int
+            As those of `encounters`.
+
+        Returns
+        -------
+        PairKernel
+            Left out are encounters that ended as a collapse, and those whose centres part already at the
+            first contact, which spheres never do; the attributes ``collapsed`` and ``receding`` have their
+            shares.
+
+        Raises
+        ------
+        ValueError
+            For a wrong argument; the message names it, its value and what is allowed.
+        """
+        allowed = "increasing numbers >= 0"
+        ratios = reals("temperature_ratios", temperature_ratios, allowed, dimensions=(1,))
+        check_each("temperature_ratios", ratios, np.diff(ratios, prepend=-1.0) > 0.0, allowed)
+        check_each("temperature_ratios", ratios, ratios >= 0.0, allowed)
+        temperature = positive("translational_temperature", translational_temperature, "J")
+        count, number = whole("encounters", encounters, 2, 2**40), checked_threads(threads)
+        bins = whole("bins", bins, 1, 10**6)
+        total = count * len(ratios)
+        check_size("encounters", total, total, 16 * 8, "encounters")
+        parts, shares, rates, lost = [], [], [], np.zeros(2)
+        for place, ratio in enumerate(ratios.tolist()):
+            pairs = Pairs.of(
+                body,
+                other,
+                law,
+                encounters=count,
+                translational_temperature=temperature,
+                rotational_temperature=ratio * temperature,
+                speed=None,
+                impact_parameter=None,
+                spin=None,
+                seed=seed,
+            )
+            met = 0
+            for first in range(0, count, _CHUNK):
+                pairs.drawn.update(first=first, encounters=min(_CHUNK, count - first))
+                rows, hits, rate = pairs.follow(None, contacts=True, threads=number)
+                part, left_out = _kept(rows, hits, place, plane=isinstance(other, Plane))
+                lost += left_out
+                met += len(part["contacts"])
+                parts.append(part)
+            if met == 0:
+                text = f": none of {count} at T_rot/T_tr = {ratio} has a contact: must be more"
+                raise ParameterError(Problem("encounters", text))
+            shares.append(met / count)
+            rates.append(rate)
+        share = np.array(shares)
+        values, scatter = np.array(rates) * share, np.sqrt(share * (1.0 - share) / count)
+        unit = _rate_unit(plane=isinstance(other, Plane))
+        about = {"long_name": "rate of encounters with contact", "units": unit}
+        error = {"long_name": "standard error of encounter_rate", "units": unit}
+        variables: dict[str, Any] = {
+            "encounter_rate": ("temperature_ratio", values, about),
+            "encounter_rate_error": ("temperature_ratio", np.array(rates) * scatter, error),
+        }
+        for name, (last, text, kind) in _KEPT.items():
+            joined = np.concatenate([part[name] for part in parts])
+            variables[name] = (("encounter", *last), joined, {"long_name": text, "units": kind})
+        coordinates = {
+            "temperature_ratio": ("temperature_ratio", ratios, {"long_name": "T_rot/T_tr", "units": "1"}),
+            "direction": ["normal", "tangential", "binormal"],
+        }
+        attributes = described(pairs) | {"title": "Encounters with contact of two bodies in free flight"}
+        attributes |= {"translational_temperature": temperature, "seed": seed, "bins": bins}
+        attributes |= {"encounters": count, "collapsed": lost[0] / total, "receding": lost[1] / total}
+        return cls(xr.Dataset(variables, coordinates, attributes))
+
+    def rvs(
+        self,
+        velocity: npt.ArrayLike,
+        direction: npt.ArrayLike,
+        temperature_ratio: npt.ArrayLike = 1.0,
+        *,
+        random_state: int | np.random.Generator = 0,
+    ) -> KernelDraw:
+        """Draw what collisions of two particles do.
+
+        For each a recorded encounter of the same bin of v_n = -u·k and the nearest T_rot/T_tr is drawn, and
+        the change of the relative velocity in it is turned to the given u and k, and scaled with v_n, but in
+        the lowest bin, where rotation decides what happens. Give the first body the part m₂/(m₁ + m₂) of the
+        change of u, and the second -m₁/(m₁ + m₂): momentum is exact. Energies are right in distribution, not
+        in each collision: what happens depends on u across k and on the energies of rotation of the recorded
+        encounter, not on the given ones. So the energy of rotation of a particle that has little of it may
+        become negative.
+
+        Parameters
+        ----------
+        velocity : array_like, shape (..., 3)
+            Relative velocity u of the centres, of the first less the second, in m/s.
+        direction : array_like, shape (..., 3)
+            Unit vector k from the second centre to the first; u·k < 0.
+        temperature_ratio : array_like
+            T_rot/T_tr of the gas.
+        random_state : int or numpy.random.Generator
+            A seed, or what to draw from.
+
+        Returns
+        -------
+        KernelDraw
+            The relative velocity after, the changes of both energies of rotation, scaled alike, and the
+            number of contacts.
+
+        Raises
+        ------
+        ValueError
+            For a wrong argument; the message names it, its value and what is allowed.
+        """
+        u = reals(
+            "velocity", velocity, "vectors of three finite numbers (m/s)", unit="m s-1", dimensions=None
+        )
+        k = reals("direction", direction, "unit vectors of three numbers", dimensions=None)
+        ratio = reals("temperature_ratio", temperature_ratio, "numbers >= 0", dimensions=None)
+        check_each("temperature_ratio", ratio, ratio >= 0.0, "numbers >= 0")
+        for name, vectors in (("velocity", u), ("direction", k)):
+            if vectors.ndim == 0 or vectors.shape[-1] != 3:
+                raise ParameterError(Problem(name, f" has the shape {vectors.shape}: must be (..., 3)"))
+        lengths = np.linalg.norm(k, axis=-1)
+        if not np.all(np.abs(lengths - 1.0) < 1e-9):
+            raise ParameterError(wrong("direction", direction, "unit vectors, of length 1"))
+        try:
+            shape = np.broadcast_shapes(u.shape[:-1], k.shape[:-1], ratio.shape)
+        except ValueError:
+            text = f" has the shape {k.shape}: must go with velocity, {u.shape}, and temperature_ratio"
+            raise ParameterError(Problem("direction", f"{text}, {ratio.shape}")) from None
+        u, k = (np.broadcast_to(vectors, (*shape, 3)) for vectors in (u, k))
+        approach = -np.sum(u * k, axis=-1)
+        if not np.all(approach > 0.0):
+            raise ParameterError(wrong("velocity", velocity, "towards each other: u·k < 0"))
+        rng = generator("random_state", random_state)
+        drawn, lowest = self._draw(approach, np.broadcast_to(ratio, shape), rng)
+        recorded = {name: self.data[name].to_numpy()[drawn] for name in _KEPT}
+        scale = np.where(lowest, 1.0, approach / recorded["centre_speed"])
+        across, third = _frame(u, k)
+        change = scale[..., np.newaxis] * recorded["velocity_change"]
+        after = u + change[..., :1] * k + change[..., 1:2] * across + change[..., 2:] * third
+        turning = (scale**2)[..., np.newaxis] * recorded["rotational_change"]
+        return KernelDraw(after, turning, recorded["contacts"])
+
+    def _draw(
+        self, speed: FloatArray, ratio: FloatArray, rng: np.random.Generator
+    ) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.bool_]]:
+        """Return the place of an encounter of the same bin for each, and whether that is the lowest one."""
+        drawn, lowest = np.zeros(speed.shape, dtype=np.intp), np.zeros(speed.shape, dtype=bool)
+        chance = rng.random(speed.shape)
+        nearest = np.searchsorted(0.5 * (self._ratios[1:] + self._ratios[:-1]), ratio)
+        for number, (rows, starts, edges) in enumerate(self._bins):
+            here = nearest == number
+            at = np.searchsorted(edges, speed[here], side="right")
+            low, high = starts[at], starts[at + 1]
+            lowest[here] = at == 0
+            drawn[here] = rows[low + (chance[here] * (high - low)).astype(np.intp)]
+        return drawn, lowest
+
+
+_KEPT = {
+    "ratio_number": ((), "place of T_rot/T_tr", "1"),
+    "centre_speed": ((), "speed of the centres of mass along their line before the first contact", "m s-1"),
+    "velocity_change": (("direction",), "change of the relative velocity", "m s-1"),
+    "rotational_energy_before": (("particle",), "rotational energy of each body before", "J"),
+    "rotational_change": (("particle",), "change of the rotational energy of each body", "J"),
+    "contacts": ((), "number of contacts", "1"),
+    "deflection": ((), "angle between the relative velocities before and after", "rad"),
+    "restitution_centres": ((), "-(u'.k)/(u.k)", "1"),
+}
+
+
+_RATE = ("encounter_rate", "encounter_rate_error")
+
+
+def _rate_unit(*, plane: bool) -> str:
+    """Return the unit of a rate at unit density: on unit area of a plane, of a particle elsewhere."""
+    return "m s-1" if plane else "m3 s-1"
+
+
+def _frame(u: FloatArray, k: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the unit vectors along the part of u across k, any such where that is none, and across both."""
+    least = np.eye(3)[np.argmin(np.abs(k), axis=-1)]
+    size = np.linalg.norm(u, axis=-1, keepdims=True)
+    across = u - np.sum(u * k, axis=-1, keepdims=True) * k
+    some = np.linalg.norm(across, axis=-1, keepdims=True) > 1e-12 * size
+    across = np.where(some, across, np.cross(k, least))
+    across = across - np.sum(across * k, axis=-1, keepdims=True) * k
+    across = across / np.linalg.norm(across, axis=-1, keepdims=True)
+    return across, np.cross(k, across)
+
+
+def _kept(
+    rows: FloatArray, hits: FloatArray, place: int, *, plane: bool
+) -> tuple[dict[str, Any], tuple[int, int]]:
+    """Return what is kept of encounters with contact, and the numbers of those that collapsed or recede."""
+    each = {name: values for name, values, _ in columns(_core.PAIR_ENCOUNTER, rows)}
+    times = next(values for name, values, _ in columns(_core.PAIR_HIT, hits) if name == "time")
+    contacts = each["contacts"].astype(np.int64)
+    starts = np.cumsum(contacts) - contacts
+    collapsed = each["ending"] == COLLAPSE
+    good = (contacts > 0) & ~collapsed
+    of_both = {name: each[name][good] for name in ("velocity_before", "velocity_after", "position_before")}
+    u, after, apart = (values[:, 0] - values[:, 1] for values in of_both.values())
+    if plane:
+        k = np.broadcast_to([0.0, 0.0, 1.0], u.shape)
+    else:
+        line = apart + times[starts[good], np.newaxis] * u
+        k = line / np.linalg.norm(line, axis=-1, keepdims=True)
+    change = after - u
+    parts = np.stack([np.sum(change * axis, axis=-1) for axis in (k, *_frame(u, k))], axis=-1)
+    energies = [each[f"rotational_energy_{when}"][good] for when in ("before", "after")]
+    found = {
+        "ratio_number": np.full(len(u), place),
+        "centre_speed": -np.sum(u * k, axis=-1),
+        "velocity_change": parts,
+        "rotational_energy_before": energies[0],
+        "rotational_change": energies[1] - energies[0],
+        "contacts": contacts[good],
+        "deflection": each["deflection"][good],
+        "restitution_centres": each["restitution_centres"][good],
+    }
+    # A body that turns may hit another that its centre moves away from.
+    towards = found["centre_speed"] > 0.0
+    lost = (int(np.count_nonzero(collapsed)), int(np.count_nonzero(~towards)))
+    return {name: values[towards] for name, values in found.items()}, lost
