@@ -1,6 +1,8 @@
 """A gas beside exact rates of contact, Haff's law, rough spheres and what cannot change."""
 
 import math
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -196,6 +198,20 @@ def test_a_run_is_continued_from_its_state() -> None:
     for name in ("translational_temperature", "rotational_temperature"):
         error = float(np.hypot(then[f"{name}_error"][-1], whole[f"{name}_error"][-1]))
         assert abs(float(then[name][-1] - whole[name][-1])) < 4.5 * error
+
+
+def test_a_gas_is_saved(tmp_path: Path) -> None:
+    """With what it was made by, and read as it was."""
+    data = rs.gas.cool(
+        unit(1.0), ELASTIC, particles=40, collisions=1, translational_temperature=1.0, record="state"
+    )
+    assert data.attrs["version"] == version("restitution")
+    assert data.attrs["Conventions"].startswith("CF-")
+    data.to_netcdf(tmp_path / "gas.nc")
+    with xr.open_dataset(tmp_path / "gas.nc") as again:
+        xr.testing.assert_equal(again, data)
+        then = rs.gas.cool(unit(1.0), ELASTIC, collisions=1, state=again.load(), seed=2)
+    assert then.attrs["seed"] == 2
 
 
 def test_the_state_of_a_mixture() -> None:

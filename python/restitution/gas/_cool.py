@@ -15,6 +15,7 @@ from restitution._internal.arrays import FloatArray, IntArray, positive, real, w
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution._internal.resources import check_memory, checked_threads, progress_bar
 from restitution.bodies import AnyBody, Body, RigidBody
+from restitution.drop.dataset import version_here
 from restitution.laws import CollisionLaw, Frictionless
 from restitution.pair.states import read_states
 
@@ -211,13 +212,18 @@ def cool(
     if record == "state":
         data = data.assign(_state(kinds, last, number))
     data.attrs |= {
+        "title": "A dilute gas, every encounter followed",
+        "Conventions": "CF-1.11",
+        "source": f"restitution {version_here()}",
+        "version": version_here(),
+        "body": ", ".join(str(kind.body) for kind in kinds),
         "law": str(law),
-        "seed": seed,
-        "phase": phase,
         "number_density": number_density,
         "heating": heating,
+        "phase": phase,
+        "batches": number,
+        "seed": seed,
     }
-    data.attrs |= {"batches": batches, "body": ", ".join(str(kind.body) for kind in kinds)}
     if not isinstance(body, list | tuple):
         data = data.isel(species=0)
     _warn(data)
