@@ -50,17 +50,39 @@ def test_rough_spheres_keep_normal_restitution() -> None:
     np.testing.assert_allclose(np.sum(after.velocity * k, axis=1), -0.7 * np.sum(u * k, axis=1), atol=1e-12)
 
 
+@pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
+def test_rough_spheres_exchange_what_kinetic_theory_says(ratio: float) -> None:
+    """M. Huthmann and A. Zippelius, Phys. Rev. E 56, R6275 (1997), and S. Luding et al. (1998), Maxwellians.
+
+    A particle gains -2(A T_tr - B T_rot) and 2(B T_tr - C T_rot) in a contact on average, d = 2, m = 1.
+    """
+    normal, beta, q = 0.8, -0.5, 0.4  # 4J/md²
+    law = rs.TangentialRestitution(normal=normal, tangential=-beta)
+    kernel = learned(dumbbell(0.0), law, temperature_ratios=[ratio], encounters=100_000)
+    rng = np.random.default_rng(12)
+    count = 200_000
+    speed = np.sqrt(-4.0 * np.log(rng.random(count)))  # of those that meet, u of variance 2T/m
+    u = np.concatenate([np.sqrt(2.0) * rng.normal(size=(count, 2)), -speed[:, np.newaxis]], axis=1)
+    after = kernel.rvs(u, [0.0, 0.0, 1.0], ratio, random_state=3)
+    eta = q * (1 + beta) / (2 * (1 + q))
+    a, b, c = (1 - normal**2) / 4 + eta * (1 - eta), eta**2 / q, eta / q * (1 - eta / q)
+    moved = 0.25 * ((after.velocity**2).sum(axis=1) - (u**2).sum(axis=1))
+    turned = after.rotational_change.sum(axis=1)
+    for found, expected in ((moved, -4 * (a - b * ratio)), (turned, 4 * (b - c * ratio))):
+        error = np.std(found) * np.hypot(1 / np.sqrt(count), 1 / np.sqrt(100_000))
+        assert abs(np.mean(found) - expected) < 4.5 * error
+        assert error < 0.01
+
+
 @pytest.mark.parametrize("ratio", [0.5, 2.0])
 def test_energies_in_distribution(ratio: float) -> None:
     """Fed with the collisions of other encounters, it exchanges on average what these did."""
     body, law = dumbbell(1.0), rs.Frictionless(normal=0.9)
     kernel = learned(body, law, temperature_ratios=[0.5, 2.0], encounters=60_000)
     fresh = learned(body, law, temperature_ratios=[ratio], encounters=60_000, seed=9).data
-    rng = np.random.default_rng(5)
     speed = fresh["centre_speed"].to_numpy()
     k = np.tile([0.0, 0.0, 1.0], (len(speed), 1))
-    across = rng.normal(size=len(speed))
-    u = np.stack([across, 0.0 * speed, -speed], axis=1)
+    u = np.stack([fresh["tangential_speed"], 0.0 * speed, -speed], axis=1)
     after = kernel.rvs(u, k, ratio, random_state=6)
     for found, expected in (
         (after.rotational_change.sum(axis=1), fresh["rotational_change"].sum("particle").to_numpy()),

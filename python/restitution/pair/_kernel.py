@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,7 +20,7 @@ from restitution.pair._encounters import COLLAPSE, Pairs, Plane, columns, descri
 _CHUNK = 1 << 16
 """Encounters that are held at a time."""
 _MANY = 20
-"""The least number of encounters in a bin."""
+"""The least encounters in a bin of v_n, and the number of neighbours in u_t from which one is drawn."""
 
 
 class KernelDraw(NamedTuple):
@@ -52,12 +53,13 @@ class PairKernel:
     ----------
     data : xarray.Dataset
         Over encounter, those with contact: ``ratio_number``, the place of its T_rot/T_tr among
-        ``temperature_ratio``; ``centre_speed`` v_n at the first contact (m/s); ``velocity_change`` of the
-        relative velocity, along k from the second centre to the first, along the part of the velocity across
-        k, and across both (m/s); ``rotational_energy_before`` and ``rotational_change`` of each body (J);
-        ``contacts``; ``deflection`` (rad); ``restitution_centres`` -(u'·k)/(u·k). Over temperature_ratio,
-        ``encounter_rate``: encounters with contact of a particle at unit density, in m³/s (on a plane on unit
-        area, in m/s). Attributes as those of `encounters`.
+        ``temperature_ratio``; ``centre_speed`` v_n and ``tangential_speed`` u_t, along and across the line of
+        centres at the first contact (m/s); ``velocity_change`` of the relative velocity, along k from the
+        second centre to the first, along the part of the velocity across k, and across both (m/s);
+        ``rotational_energy_before`` and ``rotational_change`` of each body (J); ``contacts``; ``deflection``
+        (rad); ``restitution_centres`` -(u'·k)/(u·k). Over temperature_ratio, ``encounter_rate``: encounters
+        with contact of a particle at unit density, in m³/s (on a plane on unit area, in m/s). Attributes as
+        those of `encounters`.
 
     Examples
     --------
@@ -82,13 +84,17 @@ class PairKernel:
         self.data = data
         self._ratios = data["temperature_ratio"].to_numpy()
         which, speeds = data["ratio_number"].to_numpy(), data["centre_speed"].to_numpy()
+        across = data["tangential_speed"].to_numpy()
         self._bins = []
         for number in range(len(self._ratios)):
             rows = np.flatnonzero(which == number)
             rows = rows[np.argsort(speeds[rows], kind="stable")]
             count = min(int(data.attrs["bins"]), max(len(rows) // _MANY, 1))
             starts = np.arange(count + 1) * len(rows) // count
-            self._bins.append((rows, starts, speeds[rows[starts[1:-1]]]))
+            edges = speeds[rows[starts[1:-1]]]
+            for low, high in pairwise(starts):  # within a bin by the speed across
+                rows[low:high] = rows[low:high][np.argsort(across[rows[low:high]], kind="stable")]
+            self._bins.append((rows, starts, edges, across[rows]))
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -210,13 +216,13 @@ class PairKernel:
     ) -> KernelDraw:
         """Draw what collisions of two particles do.
 
-        For each a recorded encounter of the same bin of v_n = -u·k and the nearest T_rot/T_tr is drawn, and
-        the change of the relative velocity in it is turned to the given u and k, and scaled with v_n, but in
-        the lowest bin, where rotation decides what happens. Give the first body the part m₂/(m₁ + m₂) of the
-        change of u, and the second -m₁/(m₁ + m₂): momentum is exact. Energies are right in distribution, not
-        in each collision: what happens depends on u across k and on the energies of rotation of the recorded
-        encounter, not on the given ones. So the energy of rotation of a particle that has little of it may
-        become negative.
+        For each an encounter is drawn from the twenty of the same bin of v_n = -u·k and the nearest
+        T_rot/T_tr whose speeds across k are nearest, and the change of the relative velocity in it is turned
+        to the given u and k, and scaled with v_n, but in the lowest bin, where rotation decides what happens.
+        Give the first body the part m₂/(m₁ + m₂) of the change of u, and the second -m₁/(m₁ + m₂): momentum
+        is exact. Energies are right in distribution, not in each collision: what happens depends on the spins
+        of the recorded encounter, not on those of the two particles. So the energy of rotation of a particle
+        that has little of it may become negative.
 
         Parameters
         ----------
@@ -262,7 +268,8 @@ class PairKernel:
         if not np.all(approach > 0.0):
             raise ParameterError(wrong("velocity", velocity, "towards each other: u·k < 0"))
         rng = generator("random_state", random_state)
-        drawn, lowest = self._draw(approach, np.broadcast_to(ratio, shape), rng)
+        tangential = np.linalg.norm(u + approach[..., np.newaxis] * k, axis=-1)
+        drawn, lowest = self._draw(approach, tangential, np.broadcast_to(ratio, shape), rng)
         recorded = {name: self.data[name].to_numpy()[drawn] for name in _KEPT}
         scale = np.where(lowest, 1.0, approach / recorded["centre_speed"])
         across, third = _frame(u, k)
@@ -272,24 +279,32 @@ class PairKernel:
         return KernelDraw(after, turning, recorded["contacts"])
 
     def _draw(
-        self, speed: FloatArray, ratio: FloatArray, rng: np.random.Generator
+        self, speed: FloatArray, across: FloatArray, ratio: FloatArray, rng: np.random.Generator
     ) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.bool_]]:
-        """Return the place of an encounter of the same bin for each, and whether that is the lowest one."""
+        """Return the place of an encounter like each, and whether its v_n is in the lowest bin."""
         drawn, lowest = np.zeros(speed.shape, dtype=np.intp), np.zeros(speed.shape, dtype=bool)
         chance = rng.random(speed.shape)
         nearest = np.searchsorted(0.5 * (self._ratios[1:] + self._ratios[:-1]), ratio)
-        for number, (rows, starts, edges) in enumerate(self._bins):
-            here = nearest == number
-            at = np.searchsorted(edges, speed[here], side="right")
-            low, high = starts[at], starts[at + 1]
-            lowest[here] = at == 0
-            drawn[here] = rows[low + (chance[here] * (high - low)).astype(np.intp)]
+        for number, (rows, starts, edges, recorded) in enumerate(self._bins):
+            at = np.where(nearest == number, np.searchsorted(edges, speed, side="right"), -1)
+            lowest |= at == 0
+            for place, (low, high) in enumerate(pairwise(starts.tolist())):
+                here = at == place
+                width = min(_MANY, high - low)
+                rank = low + np.searchsorted(recorded[low:high], across[here])
+                first = np.clip(rank - width // 2, low, high - width)
+                drawn[here] = rows[first + (chance[here] * width).astype(np.intp)]
         return drawn, lowest
 
 
 _KEPT = {
     "ratio_number": ((), "place of T_rot/T_tr", "1"),
     "centre_speed": ((), "speed of the centres of mass along their line before the first contact", "m s-1"),
+    "tangential_speed": (
+        (),
+        "speed of the centres of mass across their line before the first contact",
+        "m s-1",
+    ),
     "velocity_change": (("direction",), "change of the relative velocity", "m s-1"),
     "rotational_energy_before": (("particle",), "rotational energy of each body before", "J"),
     "rotational_change": (("particle",), "change of the rotational energy of each body", "J"),
@@ -342,6 +357,7 @@ def _kept(
     found = {
         "ratio_number": np.full(len(u), place),
         "centre_speed": -np.sum(u * k, axis=-1),
+        "tangential_speed": np.linalg.norm(u - np.sum(u * k, axis=-1, keepdims=True) * k, axis=-1),
         "velocity_change": parts,
         "rotational_energy_before": energies[0],
         "rotational_change": energies[1] - energies[0],
