@@ -19,6 +19,7 @@ from typing import Any
 import pytest
 
 import restitution as rs
+from reference.command import invoke
 from restitution import _core
 from restitution.drop.toml import read
 from restitution.study import study_of
@@ -168,10 +169,13 @@ def test_code_in_the_pages(page: Path, tmp_path: Path, monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_runs_in_the_pages(page: Path, tmp_path: Path) -> None:
-    """Every TOML block is a valid file of parameters, or of a study."""
+    """Every TOML block is a valid file of parameters, of a study, or of pairs, which are followed."""
     for number, text in enumerate(blocks(page, "toml")):
         path = tmp_path / f"{number}.toml"
         path.write_text(text, encoding="utf-8")
+        if "[pair]" in text:
+            assert invoke("pair", path, "--out", tmp_path / "pairs.nc").exit_code == 0
+            continue
         run = study_of(path).base if "[sweep]" in text else read(path)
         assert run.particles > 0
 

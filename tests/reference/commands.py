@@ -30,6 +30,15 @@ velocities = [0.4, 0.7]
 """
 STUDY = RUN.partition("[distribution]")[0] + '[sweep]\n"law.normal" = [0.8, 0.9]\n'
 
+GRAINS = """
+body = { shape = "dumbbell", radius = 3e-3, separation = 3e-3 }
+law = { type = "frictionless", normal = 0.9 }
+"""
+PAIR = (
+    GRAINS + "pair = { translational_temperature = 1e-9, rotational_temperature = 1e-9, encounters = 2000 }"
+)
+GAS = GRAINS + "gas = { translational_temperature = 1e-9, particles = 400, collisions = 5 }"
+
 COMMANDS: dict[str, tuple[str, str]] = {
     # name: the words, and the files that they write
     "template": ("template", ""),
@@ -42,6 +51,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "distribution learn.toml --out dist.nc --header dist.h --fortran dist.f90 --figure dist.png",
         "dist.nc dist.h dist.f90 dist.png",
     ),
+    "pair": ("pair pair.toml --out pairs.nc", "pairs.nc"),
+    "gas": ("gas gas.toml --out gas.nc", "gas.nc"),
     "fit": ("fit data.nc --velocity 0.5 0.9 --resamples 5", ""),
     "listen": ("listen ball.wav --diameter 0.02 --out ball.html", "ball.html ball.csv ball.nc"),
     "laws": ("laws --out laws --impacts 19680", "laws"),
@@ -63,6 +74,8 @@ def inputs() -> Path:
     folder = Path(tempfile.mkdtemp(prefix="inputs-"))
     (folder / "run.toml").write_text(RUN.replace("PARTICLES", "3000"), encoding="utf-8")
     (folder / "learn.toml").write_text(RUN.replace("PARTICLES", "3000"), encoding="utf-8")
+    (folder / "pair.toml").write_text(PAIR, encoding="utf-8")
+    (folder / "gas.toml").write_text(GAS, encoding="utf-8")
     (folder / "study.toml").write_text(STUDY.replace("PARTICLES", "256"), encoding="utf-8")
     CALLS["simulate"][0](**CALLS["simulate"][1]() | {"particles": 300}).to_netcdf(folder / "data.nc")
     shutil.copy(measuring.recording(), folder / "ball.wav")

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli import _explore, _fit, _listen, _pages, _runs, _sweep, _template
+from restitution.cli import _explore, _fit, _free_flight, _listen, _pages, _runs, _sweep, _template
 from restitution.cli._common import BAD_INPUT, FAILED, INTERRUPTED, WARNED, Command, Group
 from restitution.cli._process import leaving, open_missing, say, tell
 
@@ -63,6 +63,8 @@ _EXAMPLES: dict[Callable[..., None], str] = {
     _runs.statistics: "restitution statistics run.toml --out statistics.nc",
     _runs.compare: "restitution compare study.toml --out compared.nc",
     _runs.distribution: "restitution distribution run.toml --out dist.nc --header dist.h",
+    _free_flight.pair: "restitution pair pair.toml --out pairs.nc",
+    _free_flight.gas: "restitution gas gas.toml --out gas.nc",
     _fit.fit: "restitution fit run.nc --velocity 0.38 0.42",
     _listen.listen: "restitution listen ball.wav --diameter 0.040 --mass 2.7e-3 --out ball.html",
     _pages.laws: "restitution laws --out laws",

@@ -62,7 +62,7 @@ def simulate(
 
         parameters = read(run)
         how = {"until": until, "threads": threads, "progress": progress(quiet)}
-        _written(
+        written(
             lambda: simulate_run(parameters, record=checked_record(record), **how),  # type: ignore[arg-type]
             lambda data: () if quiet else _summary(data),
             run,
@@ -253,10 +253,10 @@ def _count(
         else:
             count = partial(rs.compare, study.bodies, study.laws, **how)
         summary = partial(_counts, quiet=quiet)
-        _written(count, summary, run, out, overwrite=overwrite, table=table)
+        written(count, summary, run, out, overwrite=overwrite, table=table)
 
 
-def _written(
+def written(
     work: Callable[[], "xr.Dataset"],
     summary: Callable[["xr.Dataset"], Iterable[str]],
     run: Path,

@@ -2,7 +2,7 @@
 
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
@@ -25,6 +25,7 @@ def _by_name(kinds: Iterable[type[Parameters]]) -> dict[str, type[Parameters]]:
 # Table: the key that chooses a kind of body, law or material, and the kinds there are.
 _KINDS: dict[str, tuple[str, dict[str, type[Parameters]]]] = {
     "body": ("shape", _by_name((*bodies.KINDS, *bodies.RIGID))),
+    "other": ("shape", _by_name((*bodies.KINDS, *bodies.RIGID))),
     "law": ("type", _by_name(laws.KINDS)),
     "normal": ("type", _by_name(laws.MATERIALS)),  # a table [law.normal]; a number stands for itself
 }
@@ -76,7 +77,7 @@ class Asked:
 
 def read_all(path: Path, *, single: bool = False) -> Asked:
     """Read what is to be counted, compared or learned; `single` refuses more than one body or law."""
-    reader = _Reader(tables_in(path))
+    reader = Reader(tables_in(path))
     bodies, laws = (reader.several(name, single=single) for name in _PARTS)
     for body in bodies.values():
         for law in laws.values():
@@ -112,7 +113,7 @@ def tables_in(path: Path) -> dict[str, Any]:
 
 def run_of(tables: dict[str, Any], source: str) -> Run:
     """Make a run of the tables of a file; errors begin with `source`."""
-    reader = _Reader(tables)
+    reader = Reader(tables)
     run = reader.run({name: reader.chosen(name, reader.table(name)) for name in _PARTS})
     reader.finish(source)
     assert run is not None
@@ -121,7 +122,7 @@ def run_of(tables: dict[str, Any], source: str) -> Run:
 
 def bodies_of(tables: list[Any], source: str) -> dict[str, Any]:
     """Make the bodies of several tables [[body]], by their names; errors begin with `source`."""
-    reader = _Reader({"body": tables})
+    reader = Reader({"body": tables})
     found = reader.several("body", single=False)
     reader.finish(source)
     return found
@@ -154,12 +155,12 @@ def _plain(value: Any) -> Any:
     return list(value) if isinstance(value, tuple) else value
 
 
-class _Reader:
+class Reader:
     """The tables of a file and everything that is wrong with them."""
 
-    def __init__(self, tables: dict[str, Any]) -> None:
+    def __init__(self, tables: dict[str, Any], allowed: Sequence[str] = _TABLES) -> None:
         self.tables = tables
-        self.problems = [unknown(name, "the file", _TABLES) for name in tables if name not in _TABLES]
+        self.problems = [unknown(name, "the file", allowed) for name in tables if name not in allowed]
 
     def finish(self, source: str) -> None:
         """Raise what is wrong, if anything is."""

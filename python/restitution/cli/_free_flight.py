@@ -1,0 +1,137 @@
+"""The commands without gravity: `pair` and `gas`."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from inspect import signature
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from restitution.cli._common import Out, Overwrite, Quiet, RunFile, Threads, errors_in_a_line, progress
+from restitution.cli._runs import written
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_Encounters = Annotated[
+    str,
+    typer.Option("--record", metavar="WHAT", help='"encounters"; or "state" or "contacts", which have more.'),
+]
+_Moments = Annotated[
+    str,
+    typer.Option("--record", metavar="WHAT", help='"moments", or "state": also each particle at the end.'),
+]
+
+_BESIDES = ("body", "other", "law", "state", "states", "record", "threads", "progress")
+"""Arguments that have tables or options of their own, or none."""
+
+
+def _written(
+    name: str,
+    function: Callable[..., "xr.Dataset"],
+    run: Path,
+    out: Path,
+    options: dict[str, Any],
+    summary: Callable[["xr.Dataset"], Iterator[str]],
+    *,
+    overwrite: bool,
+) -> None:
+    """Call a function with the bodies and the law of a file, and the arguments in its table of this name."""
+    from restitution._internal.parameters import ParameterError, unknown
+    from restitution.drop.toml import Reader, tables_in
+    from restitution.pair import Plane
+
+    parameters = list(signature(function).parameters)
+    meets = "other" in parameters
+    reader = Reader(tables_in(run), ("body", *(["other"] if meets else []), "law", name))
+    bodies = list(reader.several("body", single=meets).values()) or [None]
+    parts: list[Any] = [bodies if isinstance(reader.tables.get("body"), list) and not meets else bodies[0]]
+    if meets:
+        other = reader.table("other")
+        plane = other == {"shape": "plane"}
+        parts.append(Plane() if plane else reader.chosen("other", other) if other else bodies[0])
+    parts.append(reader.chosen("law", reader.table("law")))
+    table = reader.table(name)
+    keys = [key for key in parameters if key not in _BESIDES]
+    strangers = (key for key in table if key not in keys)
+    reader.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)
+    reader.finish(str(run))
+
+    def work() -> "xr.Dataset":
+        try:
+            return function(*parts, **table, **options)
+        except ParameterError as error:
+            own = (p._replace(name=f"{name}.{p.name}") if p.name in keys else p for p in error.problems)
+            raise ValueError("\n".join(f"{run}: {problem}" for problem in own)) from None
+
+    written(work, summary, run, out, overwrite=overwrite)
+
+
+def pair(
+    run: RunFile,
+    out: Out,
+    record: _Encounters = "encounters",
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    r"""Follow encounters of two bodies in free flight, or of a body with a plane.
+
+    RUN.toml has tables \[body] and \[law] as for simulate, \[other] for the second
+    body if it is another, or with shape = "plane", and a table \[pair] with the
+    arguments of restitution.pair.encounters: translational_temperature or speed,
+    rotational_temperature or spin, encounters, impact_parameter, seed. The file
+    holds what that returns.
+    """
+    with errors_in_a_line("netCDF4"):
+        import restitution as rs
+
+        options = {"record": record, "threads": threads, "progress": progress(quiet)}
+        summary = partial(_pairs, quiet=quiet)
+        _written("pair", rs.pair.encounters, run, out, options, summary, overwrite=overwrite)
+
+
+def gas(
+    run: RunFile,
+    out: Out,
+    record: _Moments = "moments",
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    r"""Follow a dilute gas of bodies that collide, without gravity.
+
+    RUN.toml has tables \[body], or \[\[body]] for each species, and \[law] as for
+    simulate, and a table \[gas] with the arguments of restitution.gas.cool:
+    translational_temperature, rotational_temperature, particles, collisions,
+    number_density, heating, seed and others. The file holds what that returns.
+    """
+    with errors_in_a_line("netCDF4"):
+        import restitution as rs
+
+        options = {"record": record, "threads": threads, "progress": progress(quiet)}
+        summary = partial(_gas, quiet=quiet)
+        _written("gas", rs.gas.cool, run, out, options, summary, overwrite=overwrite)
+
+
+def _pairs(data: "xr.Dataset", *, quiet: bool) -> Iterator[str]:
+    from restitution._core import PAIR_ENDINGS
+
+    if quiet:
+        return
+    met, count = int((data.contacts > 0).sum()), data.sizes["encounter"]
+    yield f"{met} of {count} encounters have {int(data.contacts.sum())} contacts."
+    if collapsed := int((data.ending == PAIR_ENDINGS.index("collapse")).sum()):
+        yield f"{collapsed} ended because contacts accumulate or last (collapse)."
+
+
+def _gas(data: "xr.Dataset", *, quiet: bool) -> Iterator[str]:
+    if quiet:
+        return
+    warm = data["translational_temperature"]
+    kept = ", ".join(f"{part:.4g}" for part in (warm.isel(time=-1) / warm.isel(time=0)).values.ravel())
+    yield f"After {float(data.collisions[-1]):.4g} collisions of a particle T_tr is {kept} of what it was."
+    for name, what in (("energy_created_share", "created energy"), ("collapse_share", "ended as a collapse")):
+        if share := data.attrs[name]:
+            yield f"{100 * share:.3g} % of the collisions {what}."
