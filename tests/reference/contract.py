@@ -112,6 +112,7 @@ FITTING: dict[str, str] = {
     "Revolution.from_file.scale": "profile",
     "ConvexPolyhedron.from_file.scale": "points",
     "pair.rates.temperature_ratios": "rotational_temperature",
+    "PairKernel.learn.temperature_ratios": "rotational_temperature",
     "pair.encounters.states": "translational_temperature",
     "pair.encounters.speed": "translational_temperature",
     "pair.encounters.spin": "rotational_temperature",

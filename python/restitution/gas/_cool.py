@@ -196,9 +196,9 @@ def cool(
         "seed": whole("seed", seed, 0, 2**64 - 1),
     }
     for kind in kinds:
-        if kind.particles < 2 * batches:
-            raise ParameterError(wrong("particles", kind.particles, f">= {2 * batches}, 2 for each batch"))
-    total = sum(kind.particles // batches * batches for kind in kinds)
+        if kind.particles < 2 * number:
+            raise ParameterError(wrong("particles", kind.particles, f">= {2 * number}, 2 for each batch"))
+    total = sum(kind.particles // number * number for kind in kinds)
     check_memory(total, _PARTICLE * (2 if record == "state" else 1))
     rows = [(kind.body.compiled, *kind[1:]) for kind in kinds]
     expected = round(course["collisions"] * total / 2)

@@ -11,7 +11,7 @@ import xarray as xr
 
 from restitution import _core
 from restitution._internal.arrays import FloatArray, check_each, generator, positive, reals, whole
-from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.parameters import ParameterError, Problem, shown, wrong
 from restitution._internal.resources import check_size, checked_threads
 from restitution.bodies import AnyBody
 from restitution.laws import CollisionLaw
@@ -75,12 +75,31 @@ class PairKernel:
     """
 
     def __init__(self, data: xr.Dataset) -> None:
-        if not isinstance(data, xr.Dataset) or any(name not in data for name in (*_KEPT, *_RATE)):
+        if not isinstance(data, xr.Dataset):
             raise ParameterError(wrong("data", data, "the data of a PairKernel"))
         rate = _rate_unit(plane=data.attrs.get("other") == "Plane")
-        units = dict.fromkeys(_RATE, rate) | {name: unit for name, (_, _, unit) in _KEPT.items()}
-        for name, unit in units.items():
+        wanted = {name: (("encounter", *last), unit) for name, (last, _, unit) in _KEPT.items()}
+        wanted |= dict.fromkeys(_RATE, (("temperature_ratio",), rate))
+        for name, (dims, unit) in {**wanted, "temperature_ratio": (("temperature_ratio",), "1")}.items():
+            if name not in data.variables:
+                raise ParameterError(Problem("data", f" lacks {name}, which a PairKernel has"))
+            if data[name].dims != dims or data[name].size == 0:
+                text = f" has dimensions {dict(data[name].sizes)}: must be ({', '.join(dims)})"
+                raise ParameterError(Problem(f"data.{name}", text))
             reals(f"data.{name}", data[name], "finite numbers", unit=unit)
+        for name, least in (("temperature_ratio", 0.0), ("centre_speed", 0.0), ("tangential_speed", 0.0)):
+            values = data[name].to_numpy()
+            check_each(f"data.{name}", values, values >= least, ">= 0")
+        for name, size in (("direction", 3), ("particle", 2)):
+            if data.sizes[name] != size:
+                raise ParameterError(Problem("data", f" has {data.sizes[name]} along {name}: must be {size}"))
+        numbers, ratios = data["ratio_number"].to_numpy(), data["temperature_ratio"].to_numpy()
+        check_each("data.temperature_ratio", ratios, np.diff(ratios, prepend=-1.0) > 0.0, "increasing")
+        places = np.unique(numbers)
+        if not np.array_equal(places, np.arange(len(ratios))):
+            text = f" has {shown(places)}: must be 0 to {len(ratios) - 1}, each"
+            raise ParameterError(Problem("data.ratio_number", text))
+        bins = whole("data.attrs['bins']", data.attrs.get("bins"), 1, 10**6)
         self.data = data
         self._ratios = data["temperature_ratio"].to_numpy()
         which, speeds = data["ratio_number"].to_numpy(), data["centre_speed"].to_numpy()
@@ -89,7 +108,7 @@ class PairKernel:
         for number in range(len(self._ratios)):
             rows = np.flatnonzero(which == number)
             rows = rows[np.argsort(speeds[rows], kind="stable")]
-            count = min(int(data.attrs["bins"]), max(len(rows) // _MANY, 1))
+            count = min(bins, max(len(rows) // _MANY, 1))
             starts = np.arange(count + 1) * len(rows) // count
             edges = speeds[rows[starts[1:-1]]]
             for low, high in pairwise(starts):  # within a bin by the speed across
@@ -151,8 +170,10 @@ class PairKernel:
         """
         allowed = "increasing numbers >= 0"
         ratios = reals("temperature_ratios", temperature_ratios, allowed, dimensions=(1,))
-        check_each("temperature_ratios", ratios, np.diff(ratios, prepend=-1.0) > 0.0, allowed)
+        if ratios.size == 0:
+            raise ParameterError(wrong("temperature_ratios", temperature_ratios, "at least one number >= 0"))
         check_each("temperature_ratios", ratios, ratios >= 0.0, allowed)
+        check_each("temperature_ratios", ratios, np.diff(ratios, prepend=-1.0) > 0.0, allowed)
         temperature = positive("translational_temperature", translational_temperature, "J")
         count, number = whole("encounters", encounters, 2, 2**40), checked_threads(threads)
         bins = whole("bins", bins, 1, 10**6)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple, Self
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
 import numpy as np
 import xarray as xr
@@ -339,7 +339,14 @@ class Analysis(Content):
         return text.getvalue()
 
 
-def analyse(files: Path | Sequence[Path], setting: Setting) -> Analysis:
+def paths_of(file: Any) -> list[Path]:
+    """Take the name of a file, or several."""
+    if isinstance(file, list | tuple) and file:
+        return [path_from(f"file[{number}]", one) for number, one in enumerate(file)]
+    return [path_from("file", file)]
+
+
+def analyse(file: Path | Sequence[Path], setting: Setting) -> Analysis:
     """Listen to recordings of one ball, or read tables of times, and fit what is heard.
 
     Raises
@@ -349,7 +356,7 @@ def analyse(files: Path | Sequence[Path], setting: Setting) -> Analysis:
     OSError
         If a file cannot be read.
     """
-    paths = [path_from("file", file) for file in (files if isinstance(files, list | tuple) else [files])]
+    paths = paths_of(file)
     checked(setting)
     found = [_heard(path, setting) for path in paths]
     number = 0

@@ -21,6 +21,7 @@ from restitution.experiment.listen._analysis import (
     analyse,
     checked,
     heard_in,
+    paths_of,
 )
 from restitution.experiment.listen._figures import close_ups, drawn_shape, waveform
 from restitution.experiment.listen._shape import Shape
@@ -30,7 +31,7 @@ _FAR = 10.0
 """Laws that are worse by this, in Akaike's criterion, are in the table and not in the figure."""
 
 
-def write(files: Path | Sequence[Path], out: Path, setting: Setting, *, replace: bool = False) -> Analysis:
+def write(file: Path | Sequence[Path], out: Path, setting: Setting, *, replace: bool = False) -> Analysis:
     """Analyse recordings of a ball and write ``out``, and beside it the same name with .csv and .nc.
 
     Raises
@@ -40,8 +41,7 @@ def write(files: Path | Sequence[Path], out: Path, setting: Setting, *, replace:
     OSError
         If a file cannot be read or written.
     """
-    several = files if isinstance(files, list | tuple) else [files]
-    read = [path_from("file", file) for file in several]
+    read = paths_of(file)
     out, replace = path_from("out", out), flag("replace", replace)
     if out.suffix.lower() not in (".html", ".htm"):
         raise ParameterError(wrong("out", str(out), "a file that ends with .html"))
