@@ -33,6 +33,14 @@ def test_a_body_and_a_plane(tmp_path: Path) -> None:
         assert bool((found.contacts > 0).all())
 
 
+def test_the_file_of_another_body_lies_beside_the_run(tmp_path: Path) -> None:
+    (tmp_path / "stone.csv").write_text("x,y,z,r\n0,0,0,3e-3\n1e-3,0,0,3e-3\n", encoding="ascii")
+    text = PAIR + '\nother = { shape = "clump", file = "stone.csv" }'
+    (tmp_path / "pair.toml").write_text(text, encoding="utf-8")
+    result = invoke("pair", tmp_path / "pair.toml", "--out", tmp_path / "pairs.nc")
+    assert result.exit_code == 0, result.output
+
+
 def test_a_gas(tmp_path: Path) -> None:
     (tmp_path / "gas.toml").write_text(GAS, encoding="utf-8")
     result = invoke("gas", tmp_path / "gas.toml", "--out", tmp_path / "gas.nc", "--record", "state")

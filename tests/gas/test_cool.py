@@ -10,15 +10,10 @@ import pytest
 import xarray as xr
 
 import restitution as rs
+from reference.unit import dumbbell
 from restitution.gas import theory
 
 ELASTIC = rs.Frictionless(normal=1.0)
-
-
-def unit(elongation: float) -> rs.Dumbbell:
-    """A dumbbell of mass 1 and radius 1."""
-    body = rs.Dumbbell(radius=1.0, separation=elongation, density=1.0)
-    return rs.Dumbbell(radius=1.0, separation=elongation, density=1.0 / body.mass)
 
 
 def pull(data: xr.Dataset, name: str, expected: float, at: int = -1) -> float:
@@ -39,7 +34,7 @@ EQUILIBRIUM = {0.0: (71.086127 / np.sqrt(2 * np.pi), 1.0), 0.1: (29.8299, 1.0004
 @pytest.mark.parametrize("elongation", EQUILIBRIUM)
 def test_equilibrium(elongation: float) -> None:
     """Elastic bodies at one temperature keep it, and touch as often as the exact integral says."""
-    body = unit(elongation)
+    body = dumbbell(elongation)
     data = rs.gas.cool(
         body, ELASTIC, particles=20_000, collisions=10, translational_temperature=1.0, seed=5, batches=20
     )
@@ -64,10 +59,10 @@ def test_spheres_cool_by_haffs_law() -> None:
     normal = 0.9
     law = rs.Frictionless(normal=normal)
     data = rs.gas.cool(
-        unit(0.0), law, particles=40_000, collisions=40, translational_temperature=1.0, batches=10
+        dumbbell(0.0), law, particles=40_000, collisions=40, translational_temperature=1.0, batches=10
     )
     a2 = 16 * (1 - normal) * (1 - 2 * normal**2) / (81 - 17 * normal + 30 * normal**2 * (1 - normal))
-    tau = theory.haff_time(unit(0.0), law, translational_temperature=1.0) / (1 + 3 * a2 / 16)
+    tau = theory.haff_time(dumbbell(0.0), law, translational_temperature=1.0) / (1 + 3 * a2 / 16)
     half = len(data["time"]) // 2
     expected = (1 + data["time"] / tau) ** -2
     assert float(data["translational_temperature"][half] / expected[half]) == pytest.approx(1.0, abs=0.01)
@@ -79,14 +74,14 @@ def test_spheres_cool_by_haffs_law() -> None:
 def test_rough_spheres(normal: float, beta: float) -> None:
     """The ratio of the temperatures: that of Maxwellians, which is off by some hundredths."""
     law = rs.TangentialRestitution(normal=normal, tangential=-beta)
-    data = rs.gas.cool(unit(0.0), law, particles=20_000, collisions=80, translational_temperature=1.0)
+    data = rs.gas.cool(dumbbell(0.0), law, particles=20_000, collisions=80, translational_temperature=1.0)
     ratio = float(data["rotational_temperature"][-1] / data["translational_temperature"][-1])
-    assert ratio == pytest.approx(theory.steady_ratio(unit(0.0), law), rel=0.08)
+    assert ratio == pytest.approx(theory.steady_ratio(dumbbell(0.0), law), rel=0.08)
 
 
 def test_contacts_of_one_encounter_are_not_independent() -> None:
     """Dumbbells L/R = 2, T_rot = 2T_tr: molecular chaos gives dE_rot/dt = -38.485, encounters about -25."""
-    body = unit(2.0)
+    body = dumbbell(2.0)
     chaos = theory.rates(body, ELASTIC, translational_temperature=1.0, rotational_temperature=2.0)
     data = rs.gas.cool(
         body,
@@ -105,7 +100,7 @@ def test_contacts_of_one_encounter_are_not_independent() -> None:
 
 def test_phase_of_the_rotation() -> None:
     """By the time between encounters, or uniform: the same, as axes do not remember for so long."""
-    body, law = unit(1.0), rs.Frictionless(normal=0.8)
+    body, law = dumbbell(1.0), rs.Frictionless(normal=0.8)
     both = [
         rs.gas.cool(body, law, particles=20_000, collisions=15, translational_temperature=1.0, phase=phase)
         for phase in ("time", "uniform")
@@ -153,7 +148,7 @@ def test_a_mixture() -> None:
 def test_laws_that_create_energy_heat_the_gas() -> None:
     law = rs.TangentialRestitution(normal=0.95, tangential=1.0)
     with pytest.warns(rs.gas.GasWarning, match="created energy"):
-        data = rs.gas.cool(unit(1.0), law, particles=2000, collisions=10, translational_temperature=1.0)
+        data = rs.gas.cool(dumbbell(1.0), law, particles=2000, collisions=10, translational_temperature=1.0)
     assert float(data["created_energy"][-1]) > 0.0
 
 
@@ -175,7 +170,7 @@ REFUSED: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_refused_by_name(name: str) -> None:
-    usual: dict[str, Any] = {"body": unit(1.0), "law": ELASTIC, "translational_temperature": 1.0}
+    usual: dict[str, Any] = {"body": dumbbell(1.0), "law": ELASTIC, "translational_temperature": 1.0}
     with pytest.raises(ValueError, match=f"^{name}"):
         rs.gas.cool(**usual | REFUSED[name])
 
@@ -189,12 +184,14 @@ def test_a_run_is_continued_from_its_state() -> None:
     """Energies at the end of one run are those at the beginning of the next, and Haff's law goes on."""
     law = rs.Frictionless(normal=0.9)
     first = rs.gas.cool(
-        unit(1.0), law, particles=4000, collisions=5, translational_temperature=1.0, record="state"
+        dumbbell(1.0), law, particles=4000, collisions=5, translational_temperature=1.0, record="state"
     )
-    then = rs.gas.cool(unit(1.0), law, collisions=5, state=first, seed=2)
+    then = rs.gas.cool(dumbbell(1.0), law, collisions=5, state=first, seed=2)
     for name in ("translational_temperature", "rotational_temperature", "axis_temperature", "a20", "a11"):
         np.testing.assert_allclose(then[name][0], first[name][-1], rtol=1e-12)
-    whole = rs.gas.cool(unit(1.0), law, particles=4000, collisions=10, translational_temperature=1.0, seed=3)
+    whole = rs.gas.cool(
+        dumbbell(1.0), law, particles=4000, collisions=10, translational_temperature=1.0, seed=3
+    )
     for name in ("translational_temperature", "rotational_temperature"):
         error = float(np.hypot(then[f"{name}_error"][-1], whole[f"{name}_error"][-1]))
         assert abs(float(then[name][-1] - whole[name][-1])) < 4.5 * error
@@ -203,19 +200,19 @@ def test_a_run_is_continued_from_its_state() -> None:
 def test_a_gas_is_saved(tmp_path: Path) -> None:
     """With what it was made by, and read as it was."""
     data = rs.gas.cool(
-        unit(1.0), ELASTIC, particles=40, collisions=1, translational_temperature=1.0, record="state"
+        dumbbell(1.0), ELASTIC, particles=40, collisions=1, translational_temperature=1.0, record="state"
     )
     assert data.attrs["version"] == version("restitution")
     assert data.attrs["Conventions"].startswith("CF-")
     data.to_netcdf(tmp_path / "gas.nc")
     with xr.open_dataset(tmp_path / "gas.nc") as again:
         xr.testing.assert_equal(again, data)
-        then = rs.gas.cool(unit(1.0), ELASTIC, collisions=1, state=again.load(), seed=2)
+        then = rs.gas.cool(dumbbell(1.0), ELASTIC, collisions=1, state=again.load(), seed=2)
     assert then.attrs["seed"] == 2
 
 
 def test_the_state_of_a_mixture() -> None:
-    bodies = [unit(0.0), unit(1.0)]
+    bodies = [dumbbell(0.0), dumbbell(1.0)]
     law = rs.Frictionless(normal=0.8)
     first = rs.gas.cool(
         bodies, law, particles=[400, 200], collisions=3, translational_temperature=[1.0, 2.0], record="state"
@@ -255,4 +252,4 @@ def state(**changes: Any) -> xr.Dataset:
 )
 def test_states_that_are_none(given: dict[str, Any], text: str) -> None:
     with pytest.raises(ValueError, match=text):
-        rs.gas.cool(unit(0.0), ELASTIC, **given)
+        rs.gas.cool(dumbbell(0.0), ELASTIC, **given)

@@ -5,22 +5,17 @@ import math
 import pytest
 
 import restitution as rs
+from reference.unit import dumbbell
 from restitution.gas import theory
 
 ELASTIC = rs.Frictionless(normal=1.0)
-
-
-def unit(elongation: float) -> rs.Dumbbell:
-    """A dumbbell of mass 1 and radius 1."""
-    body = rs.Dumbbell(radius=1.0, separation=elongation, density=1.0)
-    return rs.Dumbbell(radius=1.0, separation=elongation, density=1.0 / body.mass)
 
 
 def test_the_power_goes_in() -> None:
     """Of elastic dumbbells all of it stays: 3T_tr/2 + T_rot, less what the mean velocity would take."""
     power, particles, batches = 3.0, 20_000, 20
     data = rs.gas.cool(
-        unit(1.0),
+        dumbbell(1.0),
         ELASTIC,
         particles=particles,
         collisions=6,
@@ -51,7 +46,7 @@ def test_spheres_become_steady(normal: float) -> None:
     a2 = 16 * (1 - normal) * (1 - 2 * normal**2) / (241 - 177 * normal + 30 * (1 - normal) * normal**2)
     power = 8 * math.sqrt(math.pi) * (1 - normal**2) * (1 + 3 * a2 / 16)  # that keeps T = 1
     data = rs.gas.cool(
-        unit(0.0),
+        dumbbell(0.0),
         rs.Frictionless(normal=normal),
         particles=40_000,
         collisions=80,
@@ -66,7 +61,7 @@ def test_spheres_become_steady(normal: float) -> None:
 
 def test_dumbbells_become_steady() -> None:
     """Rotation, which the noise does not heat, is where collisions give it as much as they take."""
-    body, law = unit(1.0), rs.Frictionless(normal=0.9)
+    body, law = dumbbell(1.0), rs.Frictionless(normal=0.9)
 
     def gain(ratio: float) -> float:
         at = theory.rates(body, law, translational_temperature=1.0, rotational_temperature=ratio)
@@ -98,9 +93,9 @@ def test_dumbbells_become_steady() -> None:
 @pytest.mark.parametrize("heating", [-1.0, math.nan, math.inf, "much"])
 def test_what_is_no_power(heating: float) -> None:
     with pytest.raises(ValueError, match="heating ="):
-        rs.gas.cool(unit(0.0), ELASTIC, particles=100, translational_temperature=1.0, heating=heating)
+        rs.gas.cool(dumbbell(0.0), ELASTIC, particles=100, translational_temperature=1.0, heating=heating)
 
 
 def test_a_power_beyond_all_numbers() -> None:
     with pytest.raises(ValueError, match=r"heating = .*neither overflow nor underflow"):
-        rs.gas.cool(unit(0.0), ELASTIC, particles=100, translational_temperature=1.0, heating=1e200)
+        rs.gas.cool(dumbbell(0.0), ELASTIC, particles=100, translational_temperature=1.0, heating=1e200)

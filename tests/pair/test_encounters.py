@@ -13,16 +13,12 @@ from scipy.spatial.transform import Rotation
 
 import restitution as rs
 from reference.convex import area_and_mean_radius
+from reference.unit import dumbbell
 
 sys.path.insert(0, str(Path(__file__).parent))
 import oracle
 
 ELASTIC = rs.Frictionless(normal=1.0)
-
-
-def dumbbell(separation: Any, mass: Any = 1.0) -> Any:
-    unit = rs.Dumbbell(radius=1.0, separation=separation, density=1.0).mass
-    return rs.Dumbbell(radius=1.0, separation=separation, density=mass / unit)
 
 
 def surface(data: Any) -> Any:

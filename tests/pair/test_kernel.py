@@ -7,13 +7,8 @@ import pytest
 import xarray as xr
 
 import restitution as rs
+from reference.unit import dumbbell
 from restitution.pair import PairKernel
-
-
-def dumbbell(separation: float) -> rs.Dumbbell:
-    """Of mass 1, with balls of radius 1."""
-    unit = rs.Dumbbell(radius=1.0, separation=separation, density=1.0).mass
-    return rs.Dumbbell(radius=1.0, separation=separation, density=1.0 / unit)
 
 
 def geometry(number: int, seed: int) -> tuple[Any, Any]:

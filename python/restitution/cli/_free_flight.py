@@ -38,7 +38,7 @@ def _written(
     overwrite: bool,
 ) -> None:
     """Call a function with the bodies and the law of a file, and the arguments in its table of this name."""
-    from restitution._internal.parameters import ParameterError, unknown
+    from restitution._internal.parameters import ParameterError
     from restitution.drop.toml import Reader, tables_in
     from restitution.pair import Plane
 
@@ -54,8 +54,7 @@ def _written(
     parts.append(reader.chosen("law", reader.table("law")))
     table = reader.table(name)
     keys = [key for key in parameters if key not in _BESIDES]
-    strangers = (key for key in table if key not in keys)
-    reader.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)
+    reader.only(name, table, keys)
     reader.finish(str(run))
 
     def work() -> "xr.Dataset":

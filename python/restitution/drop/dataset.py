@@ -64,13 +64,20 @@ def version_here() -> str:
     return version("restitution")
 
 
-def attributes(run: Run, title: str) -> dict[str, Any]:
-    """Return the attributes of every result: title, conventions, version, all parameters and the seed."""
+def made_here(title: str) -> dict[str, Any]:
+    """Return the attributes of every Dataset that says what made it."""
     return {
         "title": title,
         "Conventions": "CF-1.11",
         "source": f"restitution {version_here()}",
         "version": version_here(),
+    }
+
+
+def attributes(run: Run, title: str) -> dict[str, Any]:
+    """Return the attributes of every result: title, conventions, version, all parameters and the seed."""
+    return {
+        **made_here(title),
         "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
         **run.attributes(),
     }

@@ -22,10 +22,11 @@ def _by_name(kinds: Iterable[type[Parameters]]) -> dict[str, type[Parameters]]:
     return {kebab(kind.__name__): kind for kind in kinds}
 
 
+_BODY = ("shape", _by_name((*bodies.KINDS, *bodies.RIGID)))
 # Table: the key that chooses a kind of body, law or material, and the kinds there are.
 _KINDS: dict[str, tuple[str, dict[str, type[Parameters]]]] = {
-    "body": ("shape", _by_name((*bodies.KINDS, *bodies.RIGID))),
-    "other": ("shape", _by_name((*bodies.KINDS, *bodies.RIGID))),
+    "body": _BODY,
+    "other": _BODY,
     "law": ("type", _by_name(laws.KINDS)),
     "normal": ("type", _by_name(laws.MATERIALS)),  # a table [law.normal]; a number stands for itself
 }
@@ -89,8 +90,7 @@ def read_all(path: Path, *, single: bool = False) -> Asked:
     tables = {}
     for name, keys in (("statistics", _COUNTING), ("distribution", _LEARNING)):
         tables[name] = reader.table(name)
-        strangers = (key for key in tables[name] if key not in keys)
-        reader.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)
+        reader.only(name, tables[name], keys)
     reader.finish(str(path))
     return Asked(bodies, laws, run, **tables)
 
@@ -105,7 +105,7 @@ def tables_in(path: Path) -> dict[str, Any]:
     except (ValueError, RecursionError) as error:  # wrong syntax, or not UTF-8
         raise ValueError(f"{path}: not a TOML file: {error}") from None
     body = tables.get("body")
-    for table in body if isinstance(body, list) else [body]:
+    for table in [*(body if isinstance(body, list) else [body]), tables.get("other")]:
         if isinstance(table, dict) and isinstance(table.get("file"), str):
             table["file"] = str(path.parent / table["file"])
     return tables
@@ -161,6 +161,11 @@ class Reader:
     def __init__(self, tables: dict[str, Any], allowed: Sequence[str] = _TABLES) -> None:
         self.tables = tables
         self.problems = [unknown(name, "the file", allowed) for name in tables if name not in allowed]
+
+    def only(self, name: str, table: Iterable[str], keys: Sequence[str]) -> None:
+        """Note the keys of a table that are none of these."""
+        strangers = (key for key in table if key not in keys)
+        self.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)
 
     def finish(self, source: str) -> None:
         """Raise what is wrong, if anything is."""
@@ -238,8 +243,7 @@ class Reader:
             make = make.from_file
             fields = [field.replace("path", "file") for field in signature(make).parameters]
         keys = [*selector, *fields]
-        strangers = (key for key in table if key not in keys)
-        self.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)
+        self.only(name, table, keys)
         values = {field: table[field] for field in fields if field in table}
         good = {
             field: part for field, part in parts.items() if part is not None and field in kind.model_fields

@@ -15,7 +15,7 @@ from restitution._internal.arrays import FloatArray, IntArray, positive, real, w
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution._internal.resources import check_memory, checked_threads, progress_bar
 from restitution.bodies import AnyBody, Body, RigidBody
-from restitution.drop.dataset import version_here
+from restitution.drop.dataset import made_here
 from restitution.laws import CollisionLaw, Frictionless
 from restitution.pair.states import read_states
 
@@ -211,11 +211,7 @@ def cool(
     data = _dataset(kinds, table, total)
     if record == "state":
         data = data.assign(_state(kinds, last, number))
-    data.attrs |= {
-        "title": "A dilute gas, every encounter followed",
-        "Conventions": "CF-1.11",
-        "source": f"restitution {version_here()}",
-        "version": version_here(),
+    data.attrs |= made_here("A dilute gas, every encounter followed") | {
         "body": ", ".join(str(kind.body) for kind in kinds),
         "law": str(law),
         "number_density": number_density,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias, get_args
 
@@ -14,7 +15,7 @@ from restitution._internal.arrays import FloatArray, check_each, real, reals, wh
 from restitution._internal.parameters import ParameterError, Parameters, Problem, wrong
 from restitution._internal.resources import check_size, checked_threads, progress_bar
 from restitution.bodies import AnyBody
-from restitution.drop.dataset import version_here
+from restitution.drop.dataset import made_here
 from restitution.laws import CollisionLaw, Law, Viscoelastic
 from restitution.pair.states import read_states
 
@@ -22,6 +23,8 @@ Record: TypeAlias = Literal["encounters", "state", "contacts"]
 _STATE = {"position": 3, "velocity": 3, "angular_velocity": 3, "attitude": 4}
 _ENDINGS: list[str] = _core.PAIR_ENDINGS
 COLLAPSE = _ENDINGS.index("collapse")
+_CHUNK = 1 << 16
+"""Encounters that are held at a time where there may be many."""
 WIDTH = sum(parts * (1 + each) for *_, parts, each in _core.PAIR_ENCOUNTER)
 """Numbers that are recorded of an encounter."""
 
@@ -94,6 +97,31 @@ class Pairs:
         if impact_parameter is not None:
             drawn["impact_parameter"] = real("impact_parameter", impact_parameter, "a finite number >= 0 (m)")
         return cls(body, other, law, drawn)
+
+    @classmethod
+    def thermal(
+        cls, body: AnyBody, other: Other, law: CollisionLaw, t: float, ratio: float, count: int, seed: int
+    ) -> Pairs:
+        """Check pairs that are drawn with T_tr = t and T_rot = ratio t."""
+        return cls.of(
+            body,
+            other,
+            law,
+            encounters=count,
+            translational_temperature=t,
+            rotational_temperature=ratio * t,
+            speed=None,
+            impact_parameter=None,
+            spin=None,
+            seed=seed,
+        )
+
+    def in_chunks(self, *, contacts: bool, threads: int) -> Iterator[tuple[FloatArray, FloatArray, float]]:
+        """Follow those that are drawn, few at a time."""
+        count = self.drawn["encounters"]
+        for first in range(0, count, _CHUNK):
+            self.drawn.update(first=first, encounters=min(_CHUNK, count - first))
+            yield self.follow(None, contacts=contacts, threads=threads)
 
     def follow(
         self, states: FloatArray | None, *, contacts: bool, threads: int, progress: Any = None
@@ -296,21 +324,21 @@ def encounters(
     if states is None and impact_parameter is None:
         data.attrs |= {
             "attempt_rate": rate,
-            "attempt_rate_units": "m s-1" if isinstance(other, Plane) else "m3 s-1",
+            "attempt_rate_units": rate_unit(plane=isinstance(other, Plane)),
         }
     kept = {name: value for name, value in pairs.drawn.items() if value is not None and name != "first"}
     plain = {name: np.ravel(value) if np.ndim(value) else value for name, value in kept.items()}
     return data.assign_attrs(described(pairs) | plain)
 
 
+def rate_unit(*, plane: bool) -> str:
+    """Return the unit of a rate at unit density: on unit area of a plane, of a particle elsewhere."""
+    return "m s-1" if plane else "m3 s-1"
+
+
 def described(pairs: Pairs) -> dict[str, Any]:
     """Return title, version, bodies and law as attributes."""
-    about: dict[str, Any] = {
-        "title": "Encounters of two bodies in free flight",
-        "Conventions": "CF-1.11",
-        "source": f"restitution {version_here()}",
-        "version": version_here(),
-    }
+    about = made_here("Encounters of two bodies in free flight")
     for name, one in (("body", pairs.body), ("other", pairs.other), ("law", pairs.law)):
         about[name] = type(one).__name__
         values = {} if isinstance(one, Plane) else one.attributes()

@@ -15,10 +15,8 @@ from restitution._internal.parameters import ParameterError, Problem, shown, wro
 from restitution._internal.resources import check_size, checked_threads
 from restitution.bodies import AnyBody
 from restitution.laws import CollisionLaw
-from restitution.pair._encounters import COLLAPSE, Pairs, Plane, columns, described
+from restitution.pair._encounters import COLLAPSE, Pairs, Plane, columns, described, rate_unit
 
-_CHUNK = 1 << 16
-"""Encounters that are held at a time."""
 _MANY = 20
 """The least encounters in a bin of v_n, and the number of neighbours in u_t from which one is drawn."""
 
@@ -77,7 +75,7 @@ class PairKernel:
     def __init__(self, data: xr.Dataset) -> None:
         if not isinstance(data, xr.Dataset):
             raise ParameterError(wrong("data", data, "the data of a PairKernel"))
-        rate = _rate_unit(plane=data.attrs.get("other") == "Plane")
+        rate = rate_unit(plane=data.attrs.get("other") == "Plane")
         wanted = {name: (("encounter", *last), unit) for name, (last, _, unit) in _KEPT.items()}
         wanted |= dict.fromkeys(_RATE, (("temperature_ratio",), rate))
         for name, (dims, unit) in {**wanted, "temperature_ratio": (("temperature_ratio",), "1")}.items():
@@ -87,25 +85,24 @@ class PairKernel:
                 text = f" has dimensions {dict(data[name].sizes)}: must be ({', '.join(dims)})"
                 raise ParameterError(Problem(f"data.{name}", text))
             reals(f"data.{name}", data[name], "finite numbers", unit=unit)
-        for name, least in (("temperature_ratio", 0.0), ("centre_speed", 0.0), ("tangential_speed", 0.0)):
-            values = data[name].to_numpy()
-            check_each(f"data.{name}", values, values >= least, ">= 0")
+        names = ("temperature_ratio", "centre_speed", "tangential_speed")
+        ratios, speeds, across = (data[name].to_numpy() for name in names)
+        for name, values in zip(names, (ratios, speeds, across), strict=True):
+            check_each(f"data.{name}", values, values >= 0.0, ">= 0")
         for name, size in (("direction", 3), ("particle", 2)):
             if data.sizes[name] != size:
                 raise ParameterError(Problem("data", f" has {data.sizes[name]} along {name}: must be {size}"))
-        numbers, ratios = data["ratio_number"].to_numpy(), data["temperature_ratio"].to_numpy()
         check_each("data.temperature_ratio", ratios, np.diff(ratios, prepend=-1.0) > 0.0, "increasing")
-        places = np.unique(numbers)
+        which = data["ratio_number"].to_numpy()
+        places = np.unique(which)
         if not np.array_equal(places, np.arange(len(ratios))):
             text = f" has {shown(places)}: must be 0 to {len(ratios) - 1}, each"
             raise ParameterError(Problem("data.ratio_number", text))
         bins = whole("data.attrs['bins']", data.attrs.get("bins"), 1, 10**6)
         self.data = data
-        self._ratios = data["temperature_ratio"].to_numpy()
-        which, speeds = data["ratio_number"].to_numpy(), data["centre_speed"].to_numpy()
-        across = data["tangential_speed"].to_numpy()
+        self._ratios = ratios
         self._bins = []
-        for number in range(len(self._ratios)):
+        for number in range(len(ratios)):
             rows = np.flatnonzero(which == number)
             rows = rows[np.argsort(speeds[rows], kind="stable")]
             count = min(bins, max(len(rows) // _MANY, 1))
@@ -181,24 +178,11 @@ class PairKernel:
         check_size("encounters", total, total, 16 * 8, "encounters")
         parts, shares, rates, lost = [], [], [], np.zeros(2)
         for place, ratio in enumerate(ratios.tolist()):
-            pairs = Pairs.of(
-                body,
-                other,
-                law,
-                encounters=count,
-                translational_temperature=temperature,
-                rotational_temperature=ratio * temperature,
-                speed=None,
-                impact_parameter=None,
-                spin=None,
-                seed=seed,
-            )
+            pairs = Pairs.thermal(body, other, law, temperature, ratio, count, seed)
             met = 0
-            for first in range(0, count, _CHUNK):
-                pairs.drawn.update(first=first, encounters=min(_CHUNK, count - first))
-                rows, hits, rate = pairs.follow(None, contacts=True, threads=number)
+            for rows, hits, flux in pairs.in_chunks(contacts=True, threads=number):
                 part, left_out = _kept(rows, hits, place, plane=isinstance(other, Plane))
-                lost += left_out
+                rate, lost = flux, lost + left_out
                 met += len(part["contacts"])
                 parts.append(part)
             if met == 0:
@@ -208,7 +192,7 @@ class PairKernel:
             rates.append(rate)
         share = np.array(shares)
         values, scatter = np.array(rates) * share, np.sqrt(share * (1.0 - share) / count)
-        unit = _rate_unit(plane=isinstance(other, Plane))
+        unit = rate_unit(plane=isinstance(other, Plane))
         about = {"long_name": "rate of encounters with contact", "units": unit}
         error = {"long_name": "standard error of encounter_rate", "units": unit}
         variables: dict[str, Any] = {
@@ -285,19 +269,17 @@ class PairKernel:
             text = f" has the shape {k.shape}: must go with velocity, {u.shape}, and temperature_ratio"
             raise ParameterError(Problem("direction", f"{text}, {ratio.shape}")) from None
         u, k = (np.broadcast_to(vectors, (*shape, 3)) for vectors in (u, k))
-        approach = -np.sum(u * k, axis=-1)
+        approach, tangential, across, third = _resolved(u, k)
         if not np.all(approach > 0.0):
             raise ParameterError(wrong("velocity", velocity, "towards each other: u·k < 0"))
         rng = generator("random_state", random_state)
-        tangential = np.linalg.norm(u + approach[..., np.newaxis] * k, axis=-1)
         drawn, lowest = self._draw(approach, tangential, np.broadcast_to(ratio, shape), rng)
-        recorded = {name: self.data[name].to_numpy()[drawn] for name in _KEPT}
-        scale = np.where(lowest, 1.0, approach / recorded["centre_speed"])
-        across, third = _frame(u, k)
-        change = scale[..., np.newaxis] * recorded["velocity_change"]
+        names = ("centre_speed", "velocity_change", "rotational_change", "contacts")
+        speed, change, turning, contacts = (self.data[name].to_numpy()[drawn] for name in names)
+        scale = np.where(lowest, 1.0, approach / speed)[..., np.newaxis]
+        change = scale * change
         after = u + change[..., :1] * k + change[..., 1:2] * across + change[..., 2:] * third
-        turning = (scale**2)[..., np.newaxis] * recorded["rotational_change"]
-        return KernelDraw(after, turning, recorded["contacts"])
+        return KernelDraw(after, scale**2 * turning, contacts)
 
     def _draw(
         self, speed: FloatArray, across: FloatArray, ratio: FloatArray, rng: np.random.Generator
@@ -338,21 +320,20 @@ _KEPT = {
 _RATE = ("encounter_rate", "encounter_rate_error")
 
 
-def _rate_unit(*, plane: bool) -> str:
-    """Return the unit of a rate at unit density: on unit area of a plane, of a particle elsewhere."""
-    return "m s-1" if plane else "m3 s-1"
+def _resolved(u: FloatArray, k: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return -u·k, the size of the part of u across k, its direction, and that across both.
 
-
-def _frame(u: FloatArray, k: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the unit vectors along the part of u across k, any such where that is none, and across both."""
+    Where that part is none, its direction is any one across k.
+    """
+    approach = -np.sum(u * k, axis=-1)
+    across = u + approach[..., np.newaxis] * k
+    tangential = np.linalg.norm(across, axis=-1)
+    some = tangential > 1e-12 * np.linalg.norm(u, axis=-1)
     least = np.eye(3)[np.argmin(np.abs(k), axis=-1)]
-    size = np.linalg.norm(u, axis=-1, keepdims=True)
-    across = u - np.sum(u * k, axis=-1, keepdims=True) * k
-    some = np.linalg.norm(across, axis=-1, keepdims=True) > 1e-12 * size
-    across = np.where(some, across, np.cross(k, least))
+    across = np.where(some[..., np.newaxis], across, np.cross(k, least))
     across = across - np.sum(across * k, axis=-1, keepdims=True) * k
     across = across / np.linalg.norm(across, axis=-1, keepdims=True)
-    return across, np.cross(k, across)
+    return approach, tangential, across, np.cross(k, across)
 
 
 def _kept(
@@ -373,12 +354,13 @@ def _kept(
         line = apart + times[starts[good], np.newaxis] * u
         k = line / np.linalg.norm(line, axis=-1, keepdims=True)
     change = after - u
-    parts = np.stack([np.sum(change * axis, axis=-1) for axis in (k, *_frame(u, k))], axis=-1)
+    approach, tangential, *axes = _resolved(u, k)
+    parts = np.stack([np.sum(change * axis, axis=-1) for axis in (k, *axes)], axis=-1)
     energies = [each[f"rotational_energy_{when}"][good] for when in ("before", "after")]
     found = {
         "ratio_number": np.full(len(u), place),
-        "centre_speed": -np.sum(u * k, axis=-1),
-        "tangential_speed": np.linalg.norm(u - np.sum(u * k, axis=-1, keepdims=True) * k, axis=-1),
+        "centre_speed": approach,
+        "tangential_speed": tangential,
         "velocity_change": parts,
         "rotational_energy_before": energies[0],
         "rotational_change": energies[1] - energies[0],
@@ -387,6 +369,6 @@ def _kept(
         "restitution_centres": each["restitution_centres"][good],
     }
     # A body that turns may hit another that its centre moves away from.
-    towards = found["centre_speed"] > 0.0
+    towards = approach > 0.0
     lost = (int(np.count_nonzero(collapsed)), int(np.count_nonzero(~towards)))
     return {name: values[towards] for name, values in found.items()}, lost

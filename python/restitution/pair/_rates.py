@@ -13,9 +13,6 @@ from restitution.bodies import AnyBody, Body, Dumbbell, LoadedSphere
 from restitution.laws import CollisionLaw, Frictionless
 from restitution.pair._encounters import COLLAPSE, Pairs
 
-_CHUNK = 1 << 16
-"""Encounters that are held at a time."""
-
 
 def _places(*names: str) -> list[slice]:
     """Return where variables are in a row of an encounter."""
@@ -114,18 +111,7 @@ def _of(
     threads: int,
 ) -> dict[str, float]:
     """Follow the encounters of one ratio of temperatures, chunk by chunk."""
-    pairs = Pairs.of(
-        body,
-        body,
-        law,
-        encounters=count,
-        translational_temperature=temperature,
-        rotational_temperature=ratio * temperature,
-        speed=None,
-        impact_parameter=None,
-        spin=None,
-        seed=seed,
-    )
+    pairs = Pairs.thermal(body, body, law, temperature, ratio, count, seed)
     sums, squares, collapsed, rate = np.zeros(4), np.zeros(4), 0, 0.0
     contacts, ending, *energy = _places(
         "contacts",
@@ -135,9 +121,8 @@ def _of(
         "rotational_energy_before",
         "rotational_energy_after",
     )
-    for first in range(0, count, _CHUNK):
-        pairs.drawn.update(first=first, encounters=min(_CHUNK, count - first))
-        rows, _, rate = pairs.follow(None, contacts=False, threads=threads)
+    for rows, _, flux in pairs.in_chunks(contacts=False, threads=threads):
+        rate = flux
         good = rows[:, ending.start] != COLLAPSE
         collapsed += int(np.count_nonzero(~good))
         number = rows[good, contacts.start]

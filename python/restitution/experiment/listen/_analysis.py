@@ -270,10 +270,14 @@ class Analysis(Content):
         return tuple(one for recording in self.recordings for one in recording.series)
 
     @property
+    def answers(self) -> tuple[Series, ...]:
+        """All drops together, or each series."""
+        return self.series if self.together is None else (self.together,)
+
+    @property
     def sentences(self) -> list[str]:
-        """The result: of all drops together, or of each series."""
-        whole = self.series if self.together is None else (self.together,)
-        return [one.sentence(self.setting) for one in whole]
+        """The result, of each of the answers."""
+        return [one.sentence(self.setting) for one in self.answers]
 
     def dataset(self) -> xr.Dataset:
         """Put everything into one Dataset over ``impact``; the covariance is that of each series.
@@ -536,13 +540,10 @@ def _lossy(file: Path) -> list[str]:
 
 def _warnings(analysis: Analysis) -> list[str]:
     setting, several = analysis.setting, len(analysis.series) > 1
-    shapes = (
-        [("", analysis.together)]
-        if analysis.together
-        else [(_named(one, several), one) for one in analysis.series]
-    )
     found = [
-        f"{name}{one.shape.disagreement}" for name, one in shapes if one.shape and one.shape.disagreement
+        f"{_named(one, len(analysis.answers) > 1)}{one.shape.disagreement}"
+        for one in analysis.answers
+        if one.shape and one.shape.disagreement
     ]
     for heard in (one.heard for one in analysis.recordings):
         share = float(heard.attrs.get("clipped_share", 0.0))

@@ -78,9 +78,9 @@ def _page(analysis: Analysis) -> str:
         if analysis.together is not None:
             parts.insert(0, paragraph(series.sentence(setting)))
         sections.append(Section(f"series-{series.number}", title, parts))
-    for shown in analysis.series if analysis.together is None else (analysis.together,):
+    for shown in analysis.answers:
         if shown.shape is not None:
-            of = f" (series {shown.number})" if analysis.together is None and len(analysis.series) > 1 else ""
+            of = f" (series {shown.number})" if len(analysis.answers) > 1 else ""
             sections.append(Section(f"shape-{shown.number}", f"Shape of the ball{of}", _shape(shown.shape)))
             sections.append(Section(f"budget-{shown.number}", f"Error budget{of}", _budget(shown.shape)))
     sections.append(Section("impacts", "All impacts", [_impacts(analysis)]))
