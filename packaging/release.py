@@ -31,9 +31,9 @@ BEFORE = (
     (
         "README.md",
         f"Until the first release the package is built from a clone: with {CLONE} and a C linker, "
-        "`pip install .` takes about three minutes.",
-        "`pip install restitution` takes no compiler. In a clone, `pip install .` takes about three minutes, "
-        f"{CLONE} and a C linker.",
+        "`pip install .` takes some six minutes on two cores.",
+        "`pip install restitution` takes no compiler. In a clone, `pip install .` takes some six minutes on "
+        f"two cores, {CLONE} and a C linker.",
     ),
     (
         "docs/start.md",
@@ -48,7 +48,7 @@ BEFORE = (
     (
         "docs/index.md",
         "There is no release yet; in a clone of the sources, "
-        "[three minutes and a Rust compiler](start.md#install) are all that it takes:\n\n"
+        "[six minutes and a Rust compiler](start.md#install) are all that it takes:\n\n"
         "```sh\npip install .\n",
         "To [install](start.md#install) it takes no compiler:\n\n```sh\npip install restitution\n",
     ),
