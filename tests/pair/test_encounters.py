@@ -199,6 +199,13 @@ def test_rates_of_a_gas() -> None:
     assert abs(float(found.rotational_exchange[0])) < 4 * float(found.rotational_exchange_error[0])
 
 
+def test_what_cannot_turn_has_no_rate_of_rotation() -> None:
+    found = rs.pair.rates(dumbbell(0.0), rs.Frictionless(normal=0.9), encounters=1000, seed=5)
+    assert np.isnan(found["rotational_cooling"]).all()
+    np.testing.assert_allclose(found["rotational_exchange"], 0.0, atol=1e-10)
+    assert (found.attrs["law"], found.attrs["seed"]) == ("Frictionless(normal=0.9)", 5)
+
+
 def states_of(**changed: Any) -> Any:
     rows = {
         "position": np.array([[[0.0, 0, 3], [0, 0, 0]]]),

@@ -16,7 +16,8 @@ from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution._internal.resources import check_memory, checked_threads, progress_bar
 from restitution.bodies import AnyBody, Body, RigidBody
 from restitution.drop.dataset import made_here
-from restitution.laws import CollisionLaw, Frictionless
+from restitution.laws import CollisionLaw
+from restitution.pair.axes import turned_axes
 from restitution.pair.states import read_states
 
 Phase = Literal["time", "uniform"]
@@ -134,7 +135,7 @@ def cool(
     xarray.Dataset
         Over ``time``, of a mixture also ``species``: ``translational_temperature`` and
         ``rotational_temperature`` (2<E_rot>/f over the f axes about which contacts turn the body: all three,
-        but for that of a body of revolution without friction), in J;
+        but for that of a body of revolution without friction; NaN for spheres without friction), in J;
         ``axis_temperature`` by ``axis``, about each principal axis; ``a20`` = 4<E_tr²>/15T_tr² - 1, ``a02`` =
         4<E_rot²>/f(f + 2)T_rot² - 1 and ``a11`` = <E_tr E_rot>/<E_tr><E_rot> - 1; ``cos2_velocity_spin`` and
         ``cos2_velocity_axis``, 1/3 where directions are independent, the axis being z of the body. Over
@@ -260,8 +261,7 @@ def _kinds(
         if s is not None and not isinstance(one, Body):
             raise ParameterError(wrong("spin_temperature", s, f"left out: {type(one).__name__} has no axis"))
         along = about if s is None else _temperature("spin_temperature", s)
-        turned = (True, True, not (isinstance(one, Body) and isinstance(law, Frictionless)))
-        kinds.append(_Kind(one, count, t, (about, about, along), turned))
+        kinds.append(_Kind(one, count, t, (about, about, along), turned_axes(one, law)))
     return kinds
 
 

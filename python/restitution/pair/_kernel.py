@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -101,16 +100,23 @@ class PairKernel:
         bins = whole("data.attrs['bins']", data.attrs.get("bins"), 1, 10**6)
         self.data = data
         self._ratios = ratios
-        self._bins = []
-        for number in range(len(ratios)):
-            rows = np.flatnonzero(which == number)
-            rows = rows[np.argsort(speeds[rows], kind="stable")]
-            count = min(bins, max(len(rows) // _MANY, 1))
-            starts = np.arange(count + 1) * len(rows) // count
-            edges = speeds[rows[starts[1:-1]]]
-            for low, high in pairwise(starts):  # within a bin by the speed across
-                rows[low:high] = rows[low:high][np.argsort(across[rows[low:high]], kind="stable")]
-            self._bins.append((rows, starts, edges, across[rows]))
+        speed_key, across_key = 0.5 / (np.max(speeds) or 1.0), 0.5 / (np.max(across) or 1.0)
+        self._keys = speed_key, across_key
+        # Encounters by ratio and speed, and then by bin and speed across: each in one increasing array.
+        rows = np.lexsort((speeds, which))
+        sizes = np.bincount(which)
+        counts = np.minimum(bins, np.maximum(sizes // _MANY, 1))
+        parts = [np.arange(n) * size // n for n, size in zip(counts, sizes, strict=True)]
+        starts = np.concatenate(
+            [part + begin for part, begin in zip(parts, np.cumsum(sizes) - sizes, strict=True)]
+        )
+        place = np.repeat(np.arange(len(starts)), np.diff(starts, append=len(rows)))
+        self._lowest = np.cumsum(counts) - counts
+        self._edges = (which + speed_key * speeds)[rows[starts]]
+        self._edges[self._lowest] = np.arange(len(ratios))
+        self._starts = np.append(starts, len(rows))
+        self._rows = rows[np.lexsort((across[rows], place))]
+        self._across = place + across_key * across[self._rows]
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -285,19 +291,16 @@ class PairKernel:
         self, speed: FloatArray, across: FloatArray, ratio: FloatArray, rng: np.random.Generator
     ) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.bool_]]:
         """Return the place of an encounter like each, and whether its v_n is in the lowest bin."""
-        drawn, lowest = np.zeros(speed.shape, dtype=np.intp), np.zeros(speed.shape, dtype=bool)
-        chance = rng.random(speed.shape)
+        speed_key, across_key = self._keys
         nearest = np.searchsorted(0.5 * (self._ratios[1:] + self._ratios[:-1]), ratio)
-        for number, (rows, starts, edges, recorded) in enumerate(self._bins):
-            at = np.where(nearest == number, np.searchsorted(edges, speed, side="right"), -1)
-            lowest |= at == 0
-            for place, (low, high) in enumerate(pairwise(starts.tolist())):
-                here = at == place
-                width = min(_MANY, high - low)
-                rank = low + np.searchsorted(recorded[low:high], across[here])
-                first = np.clip(rank - width // 2, low, high - width)
-                drawn[here] = rows[first + (chance[here] * width).astype(np.intp)]
-        return drawn, lowest
+        key = nearest + np.minimum(speed_key * speed, 0.6)
+        place = np.searchsorted(self._edges, key, side="right") - 1
+        low, high = self._starts[place], self._starts[place + 1]
+        width = np.minimum(_MANY, high - low)
+        rank = np.searchsorted(self._across, place + np.minimum(across_key * across, 0.6))
+        first = np.clip(rank - width // 2, low, high - width)
+        drawn = self._rows[first + (rng.random(speed.shape) * width).astype(np.intp)]
+        return drawn, place == self._lowest[nearest]
 
 
 _KEPT = {

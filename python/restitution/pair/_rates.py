@@ -9,9 +9,11 @@ import xarray as xr
 from restitution import _core
 from restitution._internal.arrays import check_each, positive, reals, whole
 from restitution._internal.resources import checked_threads
-from restitution.bodies import AnyBody, Body, Dumbbell, LoadedSphere
-from restitution.laws import CollisionLaw, Frictionless
+from restitution.bodies import AnyBody
+from restitution.drop.dataset import made_here
+from restitution.laws import CollisionLaw
 from restitution.pair._encounters import COLLAPSE, Pairs
+from restitution.pair.axes import turned_axes
 
 
 def _places(*names: str) -> list[slice]:
@@ -59,8 +61,8 @@ def rates(
         Over ``temperature_ratio``, at unit density, of a particle: ``contact_rate`` and ``encounter_rate``
         (encounters with contact) in m³/s; ``translational_exchange`` and ``rotational_exchange``, the changes
         of its energies, in W m³; ``translational_cooling`` and ``rotational_cooling``, the same as rates
-        -(dE/dt)/E, in m³/s; each with a standard error, ``..._error``. ``collapsed`` is the share of
-        encounters that ended as a collapse, which are left out of the exchange and the contacts.
+        -(dE/dt)/E, in m³/s, NaN where E = 0; each with a standard error, ``..._error``. ``collapsed`` is the
+        share of encounters that ended as a collapse, which are left out of the exchange and the contacts.
 
     Examples
     --------
@@ -83,7 +85,18 @@ def rates(
         values = np.array([row[name] for row in rows])
         variables[name] = (("temperature_ratio",), values, {"long_name": text, "units": unit})
     attributes = {"long_name": "T_rot/T_tr", "units": "1"}
-    return xr.Dataset(variables, coords={"temperature_ratio": ("temperature_ratio", ratios, attributes)})
+    about = {
+        "body": str(body),
+        "law": str(law),
+        "translational_temperature": temperature,
+        "encounters": count,
+        "seed": seed,
+    }
+    return xr.Dataset(
+        variables,
+        {"temperature_ratio": ("temperature_ratio", ratios, attributes)},
+        made_here("Rates of contacts and exchange in a gas, from encounters") | about,
+    )
 
 
 _RATES = {
@@ -134,20 +147,11 @@ def _of(
     # The two bodies of a pair share what happens to them, so that an encounter is one sample.
     errors = rate * np.sqrt(np.maximum(squares / count - means**2, 0.0) / count)
     means *= rate
-    freedom = np.array([3.0, degrees_of_freedom(body, law)])
+    freedom = np.array([3.0, sum(turned_axes(body, law))])
     energies = 0.5 * freedom * temperature * np.array([1.0, ratio])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        cooling, cooling_errors = -means[2:] / energies, errors[2:] / energies
+    energies[energies == 0.0] = np.nan
+    cooling, cooling_errors = -means[2:] / energies, errors[2:] / energies
     values = [*means, *cooling]
     found = dict(zip(_RATES, values, strict=True))
     found |= {f"{name}_error": value for name, value in zip(_RATES, [*errors, *cooling_errors], strict=True)}
     return found | {"collapsed": collapsed / count}
-
-
-def degrees_of_freedom(body: AnyBody, law: CollisionLaw) -> int:
-    """Return the number of axes about which contacts can turn a body."""
-    if not isinstance(law, Frictionless) or not isinstance(body, Body):
-        return 3
-    round_body = isinstance(body, Dumbbell) and body.separation == 0.0
-    centred = isinstance(body, LoadedSphere) and body.centre_of_mass == 0.0
-    return 0 if round_body or centred else 2
