@@ -33,6 +33,7 @@ from restitution._core import STOP_REASONS
 from restitution.analytic import first_impact
 from restitution.drop.energy import reported_elsewhere
 from restitution.papers import shape
+from restitution.papers.claims import SIGNIFICANT
 from restitution.papers.estimate import jackknife
 from restitution.papers.glielmo2014._claims import CLAIMS, _experiments, _negative
 
@@ -165,7 +166,13 @@ def test_tails_that_end_are_found_out() -> None:
     ],
 )
 def test_dependence(key: str, change: Function, verdict: str) -> None:
-    assert judged(key, main=run(change=change)).verdict == verdict
+    """And the shares that would change the verdict in place of the half, as the rule says, lie around it."""
+    found = judged(key, main=run(change=change))
+    assert found.verdict == verdict
+    if key == "sphere-to-sphere":
+        (told,) = re.findall(r"below ([\d.]+) .* above ([\d.]+) fail", found.rule)
+        clear, highest = map(float, told)
+        assert verdict == ("holds" if clear > 0.5 else "holds in part" if highest > 0.5 else "fails")
 
 
 def of_rotation(noise: Noise) -> xr.Dataset:
@@ -334,7 +341,10 @@ def test_size_and_height(radius: float, height: float, verdict: str) -> None:
 
     by_radius = varied(SETTINGS.radii, SETTINGS.radius, radius)
     by_height = varied(SETTINGS.heights, SETTINGS.release_height, height)
-    assert judged("size-and-height", by_radius=by_radius, by_height=by_height).verdict == verdict
+    found = judged("size-and-height", by_radius=by_radius, by_height=by_height)
+    assert found.verdict == verdict
+    (largest,) = re.findall(r"would hold from ([\d.]+) on", found.rule)
+    assert (float(largest) > SIGNIFICANT) == (verdict != "holds")
 
 
 def test_impacts_that_never_happened_change_nothing() -> None:

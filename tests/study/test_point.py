@@ -55,6 +55,7 @@ def test_standard_errors_leave_out_each_group_of_both_blocks(tmp_path: Path) -> 
     """Group g has batch g of every block; what is rounded in the sums is below 1e-7."""
     found = point(tmp_path)
     assert int(found.particles) == BLOCK * BLOCKS
+    assert int(found.pulling_impacts) == 0
     data = rs.simulate(BODY, LAW, **(RUN | {"particles": BLOCK * BLOCKS}))
     v, e = data.impact_velocity.values, data.restitution.values
 
@@ -82,6 +83,17 @@ def test_standard_errors_leave_out_each_group_of_both_blocks(tmp_path: Path) -> 
     reasons = data.stop_reason.attrs["flag_meanings"]
     assert found.stop_reason.attrs["flag_meanings"] == reasons
     assert found.stop_reason.values.tolist() == found.stop_reason.attrs["flag_values"] == list(range(6))
+
+
+@pytest.mark.filterwarnings("ignore::restitution.PullWarning", "ignore::restitution.EnergyWarning")
+def test_impacts_that_pull_are_counted_over_all_blocks(tmp_path: Path) -> None:
+    """Those of the recorded impacts in which the body leaves more slowly than without any impulse."""
+    law = rs.TangentialRestitution(normal=0.3, tangential=-0.5)
+    found = point(tmp_path, law=law).pulling_impacts
+    data = rs.simulate(BODY, law, **(RUN | {"particles": BLOCK * BLOCKS}))
+    impulse = data.impact_velocity * (1.0 + data.restitution)
+    assert int(found) == int((impulse < 0.0).sum()) == data.attrs["pulling_impacts"] > 0
+    assert found.attrs == {"long_name": "impacts in which the law let the plane pull"}
 
 
 def moments(found: xr.Dataset) -> xr.Dataset:

@@ -17,6 +17,7 @@ from restitution.bodies import AnyBody, Rough, RoughSphere
 from restitution.drop.energy import (
     LEDGER,
     NO_PULL,
+    PULLING,
     EnergyWarning,
     PullWarning,
     gains,
@@ -38,7 +39,7 @@ _PER_RUN = {
     "energy_created_impacts": "of these, impacts that multiplied the kinetic energy by more than 1 + 1e-12",
     "energy_created_share": "their share",
     "largest_energy_ratio_of_all": "their largest factor, 1 where there are none",
-    "pulling_impacts": "impacts in which the law let the plane pull",
+    "pulling_impacts": PULLING,
 }
 
 

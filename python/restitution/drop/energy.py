@@ -81,6 +81,7 @@ LEDGER = (
     "pulling_impacts",
 )
 """The attributes that say how much energy impacts created, and in how many the plane pulled."""
+PULLING = "impacts in which the law let the plane pull"
 _ROWS = 1000
 
 

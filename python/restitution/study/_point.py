@@ -13,6 +13,7 @@ from restitution import _core
 from restitution._core import STOP_REASONS
 from restitution.bodies import Body, RigidBody
 from restitution.drop.dataset import dataset
+from restitution.drop.energy import PULLING
 from restitution.drop.run import Run
 from restitution.drop.statistics import MOMENTS, Edges, Table, dataset_of
 from restitution.study._axes import Design
@@ -178,6 +179,8 @@ def _with_errors(point: Point, total: _core.Histogram, without: Sequence[_core.H
     meanings = {"flag_values": codes.tolist(), "flag_meanings": " ".join(STOP_REASONS)}
     coordinates = {name: statistics.variables[name] for name in statistics.coords if name != "stop_reason"}
     own = {name: v for name, v in statistics.variables.items() if name not in statistics.coords}
+    pulls = np.int64(statistics.attrs.get("pulling_impacts", 0))
+    own["pulling_impacts"] = xr.Variable((), pulls, {"long_name": PULLING})
     # All at once: adding to a Dataset takes as long as making one.
     result = xr.Dataset(own | found, coordinates | {"stop_reason": ("stop_reason", codes, meanings)})
     measures = [partial(form, point.run) for form in point.study.forms.values()]

@@ -152,6 +152,8 @@ def sphere_to_sphere(runs: Runs, settings: Settings) -> Finding:
     slower = change.take(slow)
     beyond = float(named.beyond(0.5)[0])
     always = beyond > SIGNIFICANT and bool(np.all(slower.beyond(0.5) > SIGNIFICANT))
+    clear = min(float(np.min(one.value - SIGNIFICANT * one.error)) for one in (named, slower))
+    highest = float(named.value[0] + SIGNIFICANT * named.error[0])
     scale = settings.lowest_speed**2 / (2 * settings.gravity * settings.radius)
     return Finding(
         measured=(
@@ -162,7 +164,9 @@ def sphere_to_sphere(runs: Runs, settings: Settings) -> Finding:
         verdict=verdict(always, beyond > -SIGNIFICANT),
         rule=f"The paper speaks of {settings.labels[0]}. Holds if there, and in each bin of lower speed, the "
         f"share of impacts followed by one on the other sphere is above ½ by more than {SIGNIFICANT:g} "
-        f"standard errors; in part if at {settings.labels[0]} it is not below ½ by as much; fails otherwise.",
+        f"standard errors; in part if at {settings.labels[0]} it is not below ½ by as much; fails otherwise. "
+        f"The half is ours: a share below {clear:.2g} in its place would make it hold, one above "
+        f"{highest:.2g} fail.",
         why="The particle comes down on the other sphere more often than not."
         if always
         else f"At {settings.labels[0]} the next impact is on the other sphere in {100 * named.value[0]:.3g} "
