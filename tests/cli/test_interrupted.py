@@ -1,10 +1,8 @@
 """The command line in a terminal: Ctrl-C loses nothing that was finished, and progress is shown."""
 
 import os
-import pty
 import signal
 import sys
-import termios
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -21,6 +19,9 @@ from restitution.drop.toml import read
 
 if sys.platform == "win32":
     pytest.skip("signals and terminals of POSIX", allow_module_level=True)
+
+import pty
+import termios
 
 # The command, with a Ctrl-C as soon as some particles have finished and others have not.
 PRESSING = """
