@@ -32,8 +32,15 @@ BEFORE = (
         "README.md",
         f"Until the first release the package is built from a clone: with {CLONE} and a C linker, "
         "`pip install .` takes some six minutes on two cores.",
-        "`pip install restitution` takes no compiler. In a clone, `pip install .` takes some six minutes on "
-        f"two cores, {CLONE} and a C linker.",
+        f"`pip install restitution` takes no compiler. From a clone, with {CLONE} and a C linker, "
+        "`pip install .` takes some six minutes on two cores.",
+    ),
+    (
+        "README.md",
+        "`pip install '.[measure]'` for recordings and\n"
+        "inference, `'.[sweep]'` for parameter studies, `'.[notebook]'`",
+        "`pip install 'restitution[measure]'` for recordings and\n"
+        "inference, `'restitution[sweep]'` for parameter studies, `'restitution[notebook]'`",
     ),
     (
         "docs/start.md",
@@ -92,9 +99,13 @@ def release(root: Path, version: str, date: str) -> None:
         path.write_text(text, encoding="utf-8")
     about = json.loads((root / "codemeta.json").read_text(encoding="utf-8"))
     about |= {"datePublished": date}
-    for key, address in (("codeRepository", "repository-code"), ("url", "url")):
-        if found := cited(root, address):
-            about[key] = found
+    code, site = cited(root, "repository-code"), cited(root, "url")
+    if code and site:
+        about |= {"codeRepository": code, "url": site}
+        urls = f'[project.urls]\nHomepage = "{site}"\nRepository = "{code}"\n\n[project.scripts]'
+        put(root, "pyproject.toml", {r"(\[project\.urls\]\n(.+\n)+\n)?\[project\.scripts\]": urls})
+        conda = f"about:\n  homepage: {site}\n  repository: {code}\n"
+        put(root, "packaging/conda/recipe.yaml", {r"about:\n(  (homepage|repository): .+\n)*": conda})
     text = json.dumps(about, indent=2, ensure_ascii=False)
     (root / "codemeta.json").write_text(text + "\n", encoding="utf-8")
 

@@ -25,7 +25,8 @@ def test_all_places_name_one_version() -> None:
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
     """What a release changes, in a tree that has an address."""
-    changed = {*release.PLACES, "CHANGELOG.md", "paper/paper.md", *(name for name, *_ in release.BEFORE)}
+    changed = {*release.PLACES, "pyproject.toml", "CHANGELOG.md", "paper/paper.md"}
+    changed |= {name for name, *_ in release.BEFORE}
     for name in changed:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)
@@ -48,6 +49,11 @@ def test_a_release(tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(SystemExit, match=r"^CHANGELOG\.md: has no section ## \[9\.9\.9\]$"):
         release.main(["9.9.9"], tree)
     assert len(release.wrong(tree, None)) == 0
+    again = {name: (tree / name).read_bytes() for name in ("pyproject.toml", "packaging/conda/recipe.yaml")}
+    assert b'\nRepository = "https://example.org/code"\n' in again["pyproject.toml"]
+    assert b"\n  homepage: https://example.org/r\n" in again["packaging/conda/recipe.yaml"]
+    release.main([VERSION], tree)
+    assert {name: (tree / name).read_bytes() for name in again} == again
 
 
 def test_links_on_a_package_index(tree: Path) -> None:
