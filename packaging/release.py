@@ -82,6 +82,9 @@ def put(root: Path, name: str, change: dict[str, str]) -> None:
 
 def release(root: Path, version: str, date: str) -> None:
     """Write version and date, and the address where there is one, into every place."""
+    log = (root / "CHANGELOG.md").read_text(encoding="utf-8")
+    if f"## [{version}] - " not in log:
+        sys.exit(f"CHANGELOG.md: has no section ## [{version}]")
     for name, pattern in PLACES.items():
         put(root, name, {pattern: rf"\g<1>{version}\g<3>"})
     dated = f"date-released: {date}"
@@ -89,9 +92,6 @@ def release(root: Path, version: str, date: str) -> None:
         put(root, "CITATION.cff", {r"(?m)^date-released: .*$": dated})
     else:
         put(root, "CITATION.cff", {r"(?m)^(version: .*)$": rf"\g<1>\n{dated}"})
-    log = (root / "CHANGELOG.md").read_text(encoding="utf-8")
-    if f"## [{version}] - " not in log:
-        sys.exit(f"CHANGELOG.md: has no section ## [{version}]")
     put(root, "CHANGELOG.md", {rf"(?m)^(## \[{re.escape(version)}\] - ).*$": rf"\g<1>{date}"})
     for name, old, new in BEFORE:
         path = root / name
