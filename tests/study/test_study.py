@@ -312,6 +312,28 @@ def test_elements_of_lists_are_varied_by_their_numbers() -> None:
         study_of({"body": ellipsoid, "sweep": {"body.semi_axes.3": [1.0, 2.0]}, **rest})
 
 
+def test_points_over_elements_have_the_bits_of_their_bodies(tmp_path: Path) -> None:
+    """An exponent, and the radius of a sphere, which has the unit of its row."""
+    ball = (0.0, 0.0, 0.0, 1.5e-3)
+    exponent = [rs.Superellipsoid(semi_axes=(3e-3, 2e-3, 1e-3), exponents=(2.0, n)) for n in (2.5, 3.0)]
+    radius = [rs.Clump(spheres=[ball, (2e-3, 0.0, 0.0, r)]) for r in (1e-3, 2e-3)]
+    law, run = rs.Frictionless(normal=0.9), {"particles": 8, "impacts": 3}
+    edges = np.array([-9.0, 0.0, 1.0, 9.0])
+    for key, values, unit, bodies in (
+        ("exponents.1", [2.5, 3.0], "1", exponent),
+        ("spheres.1.3", [1e-3, 2e-3], "m", radius),
+    ):
+        study = {"body": bodies[0], "law": law, "run": run, "sweep": {f"body.{key}": values}}
+        study["statistics"] = {"restitution_bins": edges.tolist()}
+        found = rs.sweep(study, out=tmp_path / key, threads=1)
+        name = key.replace(".", "_")
+        assert found[name].attrs["units"] == unit
+        for value, body in zip(values, bodies, strict=True):
+            alone = rs.statistics(body, law, velocity_bins=None, restitution_bins=edges, **run)
+            for count in ("restitution_count", "mean_restitution"):
+                np.testing.assert_array_equal(found[count].sel({name: value}), alone[count])
+
+
 def test_studies_compare_and_hash_by_what_they_are() -> None:
     tables = measuring.study_tables()
     one, same = study_of(tables), study_of(tables)

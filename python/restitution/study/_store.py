@@ -22,6 +22,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.files import draft_of, there
+from restitution._internal.parameters import Parameters
 from restitution._internal.process import undisturbed
 from restitution.drop.compare import unit_of
 from restitution.drop.dataset import version_here
@@ -136,12 +137,14 @@ def _names(study: Study, axis: Axis) -> dict[str, Any]:
 
 
 def unit_at(study: Study, parameter: str) -> str:
-    """Return the unit of a parameter, as its description has it."""
+    """Return the unit of a parameter, as its description has it; that of a list for its elements."""
     target: Any = study.base
-    *parts, last = parameter.split(".")
-    for part in parts:
-        target = target if part == "run" else getattr(target, part)
-    return unit_of(type(target), last)
+    unit = "1"
+    for part in parameter.removeprefix("run.").split("."):
+        if not isinstance(target, Parameters):
+            break
+        unit, target = unit_of(type(target), part), getattr(target, part)
+    return unit
 
 
 class Store:
