@@ -12,7 +12,7 @@ import numpy as np
 import restitution as rs
 
 CONTACT = 1e-4  # s, an elastic contact
-SEEDS = 6  # gases of each kind
+SEEDS = 24  # gases of each kind
 
 
 def rebound(epsilon: np.ndarray, steps: int, *, pulls: bool = True) -> np.ndarray:

@@ -53,6 +53,9 @@ def test_a_tilted_body_may_start_lower(body: rs.Dumbbell, law: rs.TangentialRest
     upright = np.array([0.0])
     text = message(lambda: rs.simulate(body, law, particles=1, release_height=height, orientation=upright))
     check(text, "release_height", height, "must be at least 0.00315 m, or a part of the body")
+    assert text.endswith("below the plane")
+    text = message(lambda: rs.simulate(rs.Box(a=3.0, b=3.0, c=3.0), law, particles=1))
+    assert text.endswith("below the plane; are its lengths in m?")
 
 
 def test_body_and_law(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:

@@ -3,6 +3,7 @@
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -317,7 +318,8 @@ def test_points_over_elements_have_the_bits_of_their_bodies(tmp_path: Path) -> N
     ball = (0.0, 0.0, 0.0, 1.5e-3)
     exponent = [rs.Superellipsoid(semi_axes=(3e-3, 2e-3, 1e-3), exponents=(2.0, n)) for n in (2.5, 3.0)]
     radius = [rs.Clump(spheres=[ball, (2e-3, 0.0, 0.0, r)]) for r in (1e-3, 2e-3)]
-    law, run = rs.Frictionless(normal=0.9), {"particles": 8, "impacts": 3}
+    law = rs.Frictionless(normal=0.9)
+    run: dict[str, Any] = {"particles": 8, "impacts": 3}
     edges = np.array([-9.0, 0.0, 1.0, 9.0])
     for key, values, unit, bodies in (
         ("exponents.1", [2.5, 3.0], "1", exponent),

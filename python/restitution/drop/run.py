@@ -207,6 +207,7 @@ class Run(Parameters):
         if placed is None or not solid.clears(least, placed):
             lowest = solid.farthest() if placed is None else solid.lowest(placed)
             allowed = f"at least {lowest!r} m, or a part of the body would reach below the plane"
+            allowed += "; are its lengths in m?" if lowest > 1.0 else ""
             raise ParameterError(wrong("release_height", self.release_height, allowed))
         return self
 
