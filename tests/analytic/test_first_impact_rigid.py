@@ -152,6 +152,10 @@ SHAPES: dict[str, tuple[Any, Any]] = {
         rs.Clump(spheres=[(0, 0, 1e-3, 2e-3), (0, 0, -1e-3, 2e-3)]),
         rs.Dumbbell(radius=2e-3, separation=2e-3),
     ),
+    "unequal balls": (
+        rs.Clump(spheres=[(0, 0, 0, 2e-3), (0, 0, 2e-3, 1.2e-3)]),
+        rs.Dumbbell(radius=(2e-3, 1.2e-3), separation=2e-3),
+    ),
     "ellipsoid": (
         rs.Ellipsoid(semi_axes=(2e-3, 3e-3, 2e-3)),
         rs.Spheroid(equatorial=2e-3, polar=3e-3),
@@ -160,19 +164,23 @@ SHAPES: dict[str, tuple[Any, Any]] = {
 
 
 @pytest.mark.parametrize(
-    ("shape", "law"),
-    [("two balls", "Coulomb"), ("ellipsoid", "frictionless")],
+    ("shape", "law", "close"),
+    [
+        ("two balls", "Coulomb", 1e-6),
+        ("ellipsoid", "frictionless", 1e-6),
+        pytest.param("unequal balls", "frictionless", 1e-4, marks=pytest.mark.slow),
+    ],
 )
-def test_bodies_that_have_an_axis_after_all(shape: str, law: str) -> None:
-    """The closed form in θ, to the error that is stated."""
+def test_bodies_that_have_an_axis_after_all(shape: str, law: str, close: float) -> None:
+    """The closed form in θ, to the error that is stated, and its moments, as docs/first-impact.md says."""
     body, same = SHAPES[shape]
     found, exact = first_impact(body, LAWS[law]), first_impact(same, LAWS[law], "isotropic")
     assert found.cdf_error < 2e-3
     x = np.concatenate([np.linspace(*exact.support(), 500), exact.ppf(np.linspace(0.0, 1.0, 500))])
     assert np.abs(found.cdf(x) - exact.cdf(x)).max() < found.cdf_error
     assert found.support() == pytest.approx(exact.support(), abs=1e-9)
-    assert found.mean() == pytest.approx(exact.mean(), abs=1e-6)
-    assert found.std() == pytest.approx(exact.std(), abs=1e-6)
+    assert found.mean() == pytest.approx(exact.mean(), abs=close)
+    assert found.std() == pytest.approx(exact.std(), abs=close)
     assert found.entropy() == pytest.approx(exact.entropy(), abs=5e-3)
     inner = exact.ppf(np.linspace(0.05, 0.95, 10))
     np.testing.assert_allclose(found.pdf(inner), exact.pdf(inner), rtol=0.05)
