@@ -1,8 +1,8 @@
 """Measure the flanks of p(ε | v), where their form ends, and why: docs/images/fits.png and its table.
 
-Run ``python examples/fits.py OUT`` to write ``fits.png``, ``fits.pdf``, ``fits.txt`` (the caption) and
+Run ``python examples/fits.py OUT`` to write ``fits.png``, ``fits-dark.png``, ``fits.txt`` (the caption) and
 ``fits.md`` (the tables of docs/fits.md) into the folder OUT. A second argument is the number of particles,
-4000 unless given: three minutes on one core.
+4000 unless given: a quarter of an hour on one core.
 """
 
 import sys
@@ -280,7 +280,7 @@ def _distance(axes: Axes, found: Measured, v: np.ndarray[Any, np.dtype[np.float6
             table["velocity"], table["ks_distance"], color=colors()[color], linestyle=style, label=label
         )
     axes.axhline(0.03, color="0.4", linewidth=0.7, linestyle=":")
-    axes.set_ylim(0, 0.32)
+    axes.set_ylim(-0.02, 0.32)
     axes.set_ylabel("distance $D$ of the fit")
     axes.legend(loc="upper right")
 
@@ -298,7 +298,7 @@ def _dependence(axes: Axes, found: Measured, v: np.ndarray[Any, np.dtype[np.floa
         fg.line(axes, speed[seen], values[seen], error[seen], color=colors()[color], linestyle=style)
     for level in (0.0, 0.5):
         axes.axhline(level, color="0.4", linewidth=0.7, linestyle=":")
-    axes.set_ylim(-0.75, 1.15)
+    axes.set_ylim(-0.85, 1.15)
     axes.set_ylabel("correlation; alternation")
     axes.legend(loc="lower right")
 

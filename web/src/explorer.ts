@@ -167,6 +167,7 @@ export class Explorer {
   drawAll(): void {
     for (const chart of Object.values(this.charts)) chart.draw();
     this.paper.draw();
+    this.player.stage?.flatten(this.player.clock.time);
   }
 
   /** Draws everything in the colours and the size in force. */
@@ -222,9 +223,9 @@ export class Explorer {
       const first = s.run.setup.impacts === 1;
       const found = s.moments(...(first ? ALL : s.window(speed)));
       const what = found.number
-        ? `mean of ε ${found.mean.toFixed(4)}, σ ${found.deviation.toFixed(4)}, rotational share ${found.share.toFixed(3)}`
+        ? `mean of ε ${found.mean.toFixed(4)}, ${found.number > 1 ? `σ ${found.deviation.toFixed(4)}, ` : ""}rotational share ${found.share.toFixed(3)}`
         : "none to average";
-      return `${name}: ${found.number.toLocaleString("en")} ${first ? "first impacts" : `impacts within ±5 % of ${speed} m/s`}; ${what}.`;
+      return `${name}: ${found.number.toLocaleString("en")} ${first ? "first " : ""}impact${found.number === 1 ? "" : "s"}${first ? "" : ` within ±5 % of ${speed} m/s`}; ${what}.`;
     });
     part("density-text").textContent = words.join(" ");
     part("summary").innerHTML = summary([["A", a], ["B", b]]);

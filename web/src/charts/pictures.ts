@@ -161,7 +161,7 @@ export function density(state: State, both: Both): Picture {
   if (found.every((x) => x.at(-1)! - x[0] < EXACT)) {
     const [value] = found[0];
     const name = share ? "rotational share" : "ε";
-    const text = share && value < EXACT ? "Nothing rotates." : `All ${found[0].length.toLocaleString("en")} impacts have ${name} = ${Number(value.toPrecision(6))}:\na line, not a distribution.`;
+    const text = share && value < EXACT ? "Nothing rotates." : `${found[0].length === 1 ? "The only impact has" : `All ${found[0].length.toLocaleString("en")} impacts have`} ${name} = ${Number(value.toPrecision(6))}:\na line, not a distribution.`;
     return { ...picture, x: { ...picture.x, ...between(value - 0.05, value + 0.05) }, mark: value, note: text };
   }
   const fewest = Math.min(...found.map((x) => x.length));

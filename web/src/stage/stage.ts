@@ -215,6 +215,18 @@ export class Stage {
     context.drawImage(this.overlay, 0, 0, width, height);
   }
 
+  /** Draws for paper, which takes a WebGL canvas as it was before: behind the writing, in the canvas of that. */
+  flatten(time: number): void {
+    this.draw(time, true);
+    const context = this.overlay.getContext("2d")!;
+    context.save();
+    context.resetTransform();
+    context.globalCompositeOperation = "destination-over";
+    context.drawImage(this.renderer.domElement, 0, 0);
+    context.restore();
+    this.stale = true;
+  }
+
   /** The same in three pixels for each of the page. */
   large(canvas: HTMLCanvasElement, time: number): void {
     const ratio = this.renderer.getPixelRatio();
