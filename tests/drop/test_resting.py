@@ -119,6 +119,9 @@ def test_what_is_decided_does_not_depend_on_later_impacts() -> None:
         assert known.any()
         np.testing.assert_array_equal(known, (after > 0) & (after <= cut))
         np.testing.assert_array_equal(early.resting[known], found.resting[known])
+    most = found.least + found.attrs["undecided"]
+    for share, error in ((found.least, found.least_error), (most, found.most_error)):
+        np.testing.assert_allclose(error, np.sqrt(share * (1.0 - share) / 200))  # of 200 draws
     # Six equal faces, to four standard errors.
     assert np.abs(found.least / found.least.sum() - 1 / 6).max() < 4 * np.sqrt(5 / 36 / 200)
 

@@ -69,7 +69,7 @@ class Sideview:
     def of(cls, data: xr.Dataset, particle: int, first: int, last: int, *, name: str) -> Sideview:
         """Read the impacts from `first` to `last`, as the argument `name` says, of a run with states."""
         if "attitude" in getattr(data, "variables", ()):
-            text = f" is of a {data.attrs.get('body')}: must be of a body with an axis, seen from aside"
+            text = f" is of {data.attrs.get('body')}: must be of a body with an axis, seen from aside"
             raise ParameterError(Problem("data", text))
         found = variables("data", data, 'restitution.simulate(..., record="state")', _NEEDED)
         check_frame("data", data)
