@@ -71,6 +71,8 @@ def main() -> int:
     parser.add_argument("only", nargs="*", help="a kind of file, a function or its argument")
     asked = parser.parse_args()
     warnings.filterwarnings("ignore", category=rs.EnergyWarning)
+    # The allocator of pyarrow has a thread, which stands a fork; Python tells of any from 3.12 on.
+    warnings.filterwarnings("ignore", "This process .* is multi-threaded", DeprecationWarning)
     places = [(kind,) for kind in reading.KINDS] + list(tables.ARGUMENTS)
     chosen = [names for names in places if all(word in names for word in asked.only)]
     chosen = chosen[asked.seed % asked.every :: asked.every]
