@@ -106,10 +106,10 @@ def check_successive(name: str, data: xr.Dataset, *, start: int | None = None) -
 
 
 def check_frame(name: str, data: xr.Dataset) -> None:
-    """Refuse vectors whose components are not those in the frame of the plane."""
-    frame = data["component"].to_numpy()
-    if "component" not in data.coords or frame.tolist() != ["x", "y", "z"]:
-        raise ParameterError(wrong(f"{name}.component", frame, "x, y, z"))
+    """Refuse vectors whose components are not those in the frame of the plane, and parts of quaternions."""
+    for each, letters in (("component", "xyz"), ("quaternion", "wxyz")):
+        if each in data.dims and (each not in data.coords or data[each].to_numpy().tolist() != [*letters]):
+            raise ParameterError(wrong(f"{name}.{each}", data[each].to_numpy(), ", ".join(letters)))
 
 
 def attribute(

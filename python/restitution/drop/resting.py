@@ -23,7 +23,7 @@ from restitution.bodies import (
     Turned,
     directions,
 )
-from restitution.drop.recorded import RECORDS, check_filled, check_successive, pull, variables
+from restitution.drop.recorded import RECORDS, check_filled, check_frame, check_successive, pull, variables
 from restitution.laws import Law
 
 if TYPE_CHECKING:
@@ -346,6 +346,7 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
     needed: dict[str, tuple[str, ...]] = dict.fromkeys(_STATE, (*RECORDS, "component"))
     needed |= {"energy_ratio": RECORDS, "attitude": (*RECORDS, "quaternion")}
     velocity, spin, position, ratio, attitude = variables("data", data, "restitution.simulate", needed)
+    check_frame("data", data)
     check_filled("data", ratio)
     check_successive("data", data, start=0)
     gravity, incline = pull("data", data)
@@ -360,11 +361,12 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
         raise ParameterError(Problem("data.energy_ratio", text))
 
     moving = velocity if data.attrs.get("law") != "Frictionless" else velocity[..., 2:]
-    turning = in_body(attitude, spin)
-    rotation = (turning @ body.inertia_tensor * turning).sum(-1) / mass
-    energy = position[..., 2] + 0.5 * ((moving**2).sum(-1) + rotation) / gravity
+    with np.errstate(over="ignore", invalid="ignore"):  # nothing is decided by what no double holds
+        turning = in_body(attitude, spin)
+        rotation = (turning @ body.inertia_tensor * turning).sum(-1) / mass
+        energy = position[..., 2] + 0.5 * ((moving**2).sum(-1) + rotation) / gravity
+        down = in_body(attitude, np.array([0.0, 0.0, -1.0]))
     impacts = np.isfinite(energy).sum(axis=1)
-    down = in_body(attitude, np.array([0.0, 0.0, -1.0]))
 
     landscape = shape.landscape
     wells, level = landscape.wells(), landscape.levels()
