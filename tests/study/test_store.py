@@ -68,6 +68,7 @@ def test_a_new_store(tiny: Study, tmp_path: Path) -> None:
     assert made.words.metadata.dimension_names == ("point", "batch", "word")
     assert all(array.attrs["long_name"] for _, array in made.group.arrays())
     units = {"run.release_height": "m", "run.gravity": "m s-2", "run.seed": "1", "body.density": "kg m-3"}
+    units |= {"run.spin.1": "rad s-1", "run.release_velocity.0": "m s-1"}
     assert {parameter: unit_at(tiny, parameter) for parameter in units} == units
     made.write(0, 0, rows())
     again = create_or_open(path, tiny, WORDS)

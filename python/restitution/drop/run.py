@@ -149,8 +149,8 @@ class Run(Parameters):
     release_height: Annotated[HeightOfRun, Field(description="m")] = 0.06
     gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
     orientation: OrientationOfRun = "uniform-angle"
-    spin: SpinOfRun = (0.0, 0.0, 0.0)
-    release_velocity: VelocityOfRun = (0.0, 0.0, 0.0)
+    spin: Annotated[SpinOfRun, Field(description="rad/s")] = (0.0, 0.0, 0.0)
+    release_velocity: Annotated[VelocityOfRun, Field(description="m/s")] = (0.0, 0.0, 0.0)
     incline: Annotated[Number, Field(ge=0, lt=math.pi / 2, description="rad")] = 0.0
     minimum_speed: Annotated[Number, Field(ge=0, description="m/s; 0 never stops a particle")] = 0.0
     seed: Annotated[Whole, Field(ge=0, lt=2**64)] = 1
