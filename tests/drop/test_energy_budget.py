@@ -1,5 +1,7 @@
 """The energies of each kind of motion before and after impacts, and who pays for a rebound above the fall."""
 
+import runpy
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -119,6 +121,23 @@ def test_rotation_pays_two_sevenths() -> None:
     error = sum(float(one.paid_by_rotation_error[0]) ** 2 for one in shares) ** 0.5
     assert abs(values[0] - values[1]) < 5 * error
     assert 2 / 7 < values[0] < 2 / 7 + 0.01
+
+
+def test_shares_that_the_pages_state() -> None:
+    """Of the film on README, and of the impact with the largest ε that stop 3 of the tour replays."""
+    root = Path(__file__).parents[2]
+    pictures = runpy.run_path(str(root / "examples" / "pictures.py"))
+    film, stop = pictures["drops"](), states(DUMBBELL, PAPER, particles=250, impacts=50, seed=1)
+    fast = stop.restitution.where(stop.impact_velocity > 0.1 * stop.impact_velocity.max())
+    assert float(fast.max()) == float(fast[115, 49]) > 1.3
+    for data, (particle, impact), stated, pages in (
+        (film, pictures["GAIN"], "pays 98 %", ("README.md", "docs/index.md", "docs/gallery.md")),
+        (stop, (115, 49), "rotation 29 %", ("web/src/tour.ts", "docs/tutorial-lecturer.md")),
+    ):
+        budget = rs.energy_budget(data).isel(particle=particle, impact=impact)
+        lost = (budget.before - budget.after).sel(energy=["sideways", "rotational"])
+        assert f"{float(lost[1] / lost.sum()):.0%}".replace("%", " %") in stated
+        assert all(stated in (root / page).read_text(encoding="utf-8") for page in pages)
 
 
 def test_data_without_states_are_refused() -> None:
