@@ -265,7 +265,7 @@ def test_rotations_of_scipy_are_attitudes() -> None:
         rs.simulate(box, law, particles=1, impacts=1, orientation=[(0.0, 0.0, 0.0, 1.0)])
     with pytest.raises(ValueError, match=r"orientation = .*for a Cylinder"):
         rs.simulate(rs.Cylinder(radius=1.0, height=1.0), law, particles=1, orientation=[0.0])
-    with pytest.raises(ValueError, match="data is of a Box: must be of a body with an axis"):
+    with pytest.raises(ValueError, match="data is of Box: must be of a body with an axis"):
         rs.figures.impact(data)
 
 

@@ -273,11 +273,6 @@ def test_films_say_what_they_cannot_do(tmp_path: Path, monkeypatch: pytest.Monke
         rs.figures.animate(rs.simulate(BODIES["prolate"], rs.Frictionless(normal=0.9), particles=1))
     with pytest.raises(ValueError, match=r"impact = 8: must be a whole number in \[0, 7\]"):
         rs.figures.impact(data, 0, 8)
-    box = rs.simulate(
-        rs.Box(a=3e-3, b=2e-3, c=1e-3), rs.Frictionless(normal=0.9), particles=1, record="state"
-    )
-    with pytest.raises(ValueError, match=r"data is of Box: must be of a body with an axis"):
-        rs.figures.impact(box, 0, 0)
 
 
 def test_a_portrait_has_its_parts() -> None:
