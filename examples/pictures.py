@@ -27,6 +27,20 @@ def drops() -> xr.Dataset:
     return rs.simulate(body, law, particles=400, impacts=12, record="state", seed=1)
 
 
+def scatter() -> xr.Dataset:
+    """Count a hundred million impacts of the paper's Fig. 2."""
+    return rs.statistics(
+        rs.Dumbbell(radius=3e-3, separation=3e-4),
+        rs.TangentialRestitution(normal=0.98),
+        particles=250_000,
+        impacts=400,
+        velocity_bins=350,
+        velocity_range=(0.05, 1.1),
+        restitution_bins=240,
+        restitution_range=(0.4, 1.6),
+    )
+
+
 def orbits() -> Image.Image:
     """Draw 56 million impacts of slow dumbbells: a line is an orbit, locked to the bounces."""
     velocity, restitution = (0.03, 0.38), (0.6, 1.4)
@@ -129,6 +143,7 @@ def strip(style: Style) -> Figure:
         axes.set_axis_off()
     for axes, (name, body) in zip(chain(*rows), bodies.items(), strict=False):
         _portrait(axes, name, body, style)
+        axes.title.set_size(8.5)
     return figure
 
 
@@ -216,11 +231,14 @@ def _side_by_side(drawn: list[Image.Image]) -> Image.Image:
 def main(folder: Path) -> None:
     """Write everything."""
     orbits().save(folder / "orbits.png", optimize=True)
-    rs.figures.styled(strip)(style="page").savefig(folder / "bodies.png", dpi=100)
-    data = drops()
+    data, found = drops(), scatter()
     grounds: tuple[Style, ...] = ("page", "page-dark")
     for ground in grounds:
         shapes(ground).save(folder / f"shapes{ground.removeprefix('page')}.png")
+        rs.figures.styled(strip)(style=ground).savefig(folder / f"bodies{ground[4:]}.png", dpi=200)
+        drawn = rs.figures.map(found, style=ground)
+        drawn.set_size_inches(5.1, 4.0)
+        drawn.savefig(folder / f"fig2{ground[4:]}.png", dpi=200)
         for name, draw in (("grains", grains), ("hulls", hulls), ("rough-bodies", rough)):
             drawn = rs.figures.styled(_with_densities)(draw(), style=ground)
             rs.figures.save(drawn, folder / f"{name}{ground.removeprefix('page')}.png", title=name.title())
