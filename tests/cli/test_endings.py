@@ -26,7 +26,7 @@ def long(tmp_path: Path) -> Path:
 
 def wait_for(pattern: str, folder: Path) -> None:
     """Until a file of that name is there."""
-    for _ in range(2000):
+    for _ in range(12_000):
         if any(re.fullmatch(pattern, file.name) for file in folder.iterdir()):
             return
         time.sleep(0.01)

@@ -203,7 +203,9 @@ def judged(name: str, text: str, argument: str, bad: Any) -> str | None:
     for line in text.splitlines():
         value = line.removeprefix(f"{argument} = ")
         # As the parameter holds it.
-        kept = str(bad) if isinstance(bad, Path) else tuple(bad) if isinstance(bad, list) else bad
+        kept = str(bad) if isinstance(bad, Path) else bad
+        if isinstance(bad, list):
+            kept = tuple(one.item() if isinstance(one, np.generic) else one for one in bad)
         alike = (shown(bad), shown(kept))
         if value != line and not value.startswith(alike) and not _same_number(value, bad):
             return f"shows another value than {shown(bad)}: {text}"
