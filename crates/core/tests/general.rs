@@ -225,6 +225,41 @@ fn coulomb_is_the_oracles_for_any_compliance() {
     distances.below(1.0, 200.0);
 }
 
+/// Next to where two rays merge, κ = μ(k₁ − k₂)(cos³φ, −sin³φ), the slip hardly turns any more, and comes to rest meanwhile.
+#[test]
+fn rays_that_merge_are_the_oracles() {
+    let mut random = Random(4);
+    let mut distances = Distances::default();
+    for number in 0..300 {
+        let first = random.between(0.5, 1.0);
+        let second = first * random.between(0.05, 0.95);
+        let (friction, angle) = (random.between(0.1, 1.5), random.between(0.0, 6.3));
+        let off = random.one(&[-1.0, 1.0]) * random.magnitude(-12.0, -2.0);
+        let size = friction * (first - second) * (1.0 + off);
+        let (x, y) = (size * angle.cos().powi(3), -size * angle.sin().powi(3));
+        let normal = x * x / first + y * y / second + random.between(0.1, 1.0);
+        let turned = angle + random.one(&[-1.0, 1.0]) * random.magnitude(-8.0, -1.0);
+        let slip = random.between(0.3, 3.0);
+        let contact = Contact {
+            response: [[first, 0.0, x], [0.0, second, y], [x, y, normal]],
+            velocity: [slip * turned.cos(), slip * turned.sin(), -1.0],
+        };
+        for hypothesis in HYPOTHESES {
+            let rule = Rule::Coulomb {
+                friction,
+                hypothesis,
+            };
+            let law = rule.law(&Restitution::Constant(0.9));
+            let expected = contact.answer(&rule, 0.9);
+            let found = answer(&law, &contact);
+            distances.add(&found, expected.impulse, &contact.response, || {
+                format!("{number} {law:?} {contact:?} {found:?} {expected:?}")
+            });
+        }
+    }
+    distances.below(1.0, 200.0);
+}
+
 #[test]
 fn the_algebraic_laws_are_the_oracles() {
     let mut random = Random(2);

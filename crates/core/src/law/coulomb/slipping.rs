@@ -62,6 +62,9 @@ const LONGEST: f64 = 6.0;
 const MOST_POWER: f64 = 20.0;
 /// The last two coefficients of Legendre's series, relative to the sum, below which the polynomial through the nodes is exact.
 const RESOLVED: f64 = 2e-14;
+/// The discriminant of D over the square of its linear coefficient below which D is written about its minimum: two rays are about to merge there, the
+/// slip turns so slowly that it may come to rest meanwhile, and the sum of the powers of z would be rounding only.
+const MERGING: f64 = 1e-4;
 
 impl Sliding<Scalar> for Compliance {
     fn slide(
@@ -301,8 +304,11 @@ struct Sector {
     side: f64,
     /// cot(δ/2) of the ray that repels.
     k: f64,
-    /// The coefficients of D and R, and α and β.
+    /// The coefficients of D in powers of z, and in those of z less `middle`, which is 0 but where two rays are about to merge.
     turn: [f64; 3],
+    about: [f64; 3],
+    middle: f64,
+    /// The coefficients of R, and α and β.
     growth: [f64; 5],
     drive: [f64; 2],
     /// The singularities in the upper half of the plane of ln w, roughly: real part and imaginary part.
@@ -370,11 +376,18 @@ impl Sector {
                 }
             }
         }
+        let (mut middle, mut about) = (0.0, turn);
+        if discriminant.abs() < MERGING * turn[1] * turn[1] {
+            middle = -0.5 * turn[1] / turn[2];
+            about = [-0.25 * discriminant / turn[2], 0.0, turn[2]];
+        }
         let sector = Self {
             ray,
             side,
             k,
             turn,
+            about,
+            middle,
             growth: [
                 alpha - along,
                 -2.0 * beta,
@@ -404,8 +417,9 @@ impl Sector {
     /// −d ln w/dθ.
     fn pace(&self, w: f64) -> f64 {
         let q = 1.0 + self.k * w;
-        let [a, b, c] = self.turn;
-        -(a * q * q + b * q * w + c * w * w) / (q * q + w * w)
+        let t = w - self.middle * q;
+        let [a, b, c] = self.about;
+        -(a * q * q + b * q * t + c * t * t) / (q * q + w * w)
     }
 
     /// The longest panel from w on in which the functions are polynomials to rounding: from (|x₀ − x_i| + |x₁ − x_i|)/|x₀ − x₁| = [`CLEAR`].
@@ -453,14 +467,15 @@ impl Sector {
     #[inline(always)]
     fn functions(&self, w: &Nodal) -> [Nodal; 4] {
         let mut found = [[0.0; NODES]; 4];
-        let [a, b, c] = self.turn;
+        let [a, b, c] = self.about;
         let [r0, r1, r2, r3, r4] = self.growth;
         for j in 0..NODES {
             let z = w[j];
             let q = 1.0 + self.k * z;
             let (zz, qq, zq) = (z * z, q * q, z * q);
             let size = zz + qq;
-            let turn = a * qq + b * zq + c * zz;
+            let t = z - self.middle * q;
+            let turn = a * qq + b * (t * q) + c * (t * t);
             let growth = qq * (r0 * qq + r1 * zq) + zz * (r2 * qq + r3 * zq + r4 * zz);
             let inverse = 1.0 / (size * turn);
             let whole = 1.0 / size;
@@ -506,14 +521,19 @@ impl Panel {
     /// A panel of this length or shorter, in which ln ρ is good to rounding.
     #[inline(always)]
     fn new(axes: &PrincipalFrame, sector: &Sector, w: f64, rho: f64, mut length: f64) -> Self {
+        let mut before = f64::INFINITY;
         loop {
             let panel = Self::of_length(axes, sector, w, rho, length);
             let change = dot(&QUADRATURE.weights, &panel.growth).abs().max(1.0);
+            let last = QUADRATURE.last(&panel.growth);
             // Also if it is not a number.
-            let is_rough = QUADRATURE.last(&panel.growth) > 1.5 * RESOLVED * change;
+            let is_rough = last > 1.5 * RESOLVED * change;
+            // What is of rounding falls with the length, and what is not with its 24th power.
+            let is_rounding = last > 0.1 * before;
             if change > 1.5 * STEEPEST {
                 length *= STEEPEST / change;
-            } else if is_rough && length > 1e-9 {
+            } else if is_rough && !is_rounding && length > 1e-9 {
+                before = last;
                 length *= 0.6;
             } else {
                 return panel;
