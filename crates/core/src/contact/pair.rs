@@ -130,7 +130,8 @@ fn root(width: f64, rate: f64, bound: f64) -> f64 {
 impl<'a> PairSearch<'a> {
     #[inline(always)]
     fn parts(&self, parts: [usize; 2]) -> [&'a Piece; 2] {
-        [0, 1].map(|i| &self.pieces[i][parts[i]])
+        let [first, second] = self.pieces;
+        [&first[parts[0]], &second[parts[1]]]
     }
 
     /// The gap of two parts, if one is a ball and the other one, too, or a plane.
@@ -337,27 +338,22 @@ impl<'a> PairSearch<'a> {
             normal: n, turning, ..
         } = found;
         let speed = turning.norm();
-        let reach = |i: usize| match pieces[i].kind {
-            PieceKind::Ball(_, radius) => pieces[i].reach + radius,
-            _ => pieces[i].reach,
-        };
+        let reach = [reach(pieces[0]), reach(pieces[1])];
         let most = if speed > 0.0 {
             1.0 / speed
         } else {
             f64::INFINITY
         };
         let longer = if speed > 0.0 { 2.0_f64.sqrt() } else { 1.0 };
-        let [first, second] = [0, 1].map(|i| {
+        let swings = |i: usize| {
             let [velocity, acceleration] = flight.bounds[i];
-            (speed * velocity + 0.5 * longer * acceleration) * reach(i)
-        });
-        let curved = first + second + (-turning.dot(flight.velocity)).max(0.0);
-        let directions = [(0, -1.0), (1, 1.0)].map(|(i, sign)| {
-            let (attitude, spin) = frames[i];
-            let (d, change) = (n * sign, turning * sign);
-            let back = attitude.inverse();
-            (back.rotate(d), back.rotate(change + d.cross(spin)))
-        });
+            (speed * velocity + 0.5 * longer * acceleration) * reach[i]
+        };
+        let curved = swings(0) + swings(1) + (-turning.dot(flight.velocity)).max(0.0);
+        let directions = [
+            direction(n * -1.0, turning * -1.0, frames[0]),
+            direction(n, turning, frames[1]),
+        ];
         let across = turning.dot(apart) + n.dot(flight.velocity);
         let (mut size, mut rate) = (0.0, across);
         for (piece, (u, change)) in pieces.into_iter().zip(directions) {
@@ -372,13 +368,9 @@ impl<'a> PairSearch<'a> {
         };
         let rate = rate + lift;
         let parted = |s: f64| {
-            let sum: f64 = pieces
-                .into_iter()
-                .zip(directions)
-                .map(|(piece, (u, change))| {
-                    piece.support(change.mul_add(s, u), Vector::default()).0
-                })
-                .sum();
+            let [(u, change), (w, other)] = directions;
+            let sum = pieces[0].support(change.mul_add(s, u), Vector::default()).0
+                + pieces[1].support(other.mul_add(s, w), Vector::default()).0;
             width + (s * (across + lift) - (sum - size)) - curved * s * s
         };
         let shortest = (INVISIBLE * self.size / (2.0 * curved)).sqrt();
@@ -416,7 +408,7 @@ impl<'a> PairSearch<'a> {
         };
         // The gap is above F by at most V²s²/2d, d the distance of what touches, which for corners is the gap itself.
         let bends = if width > NARROW * self.size {
-            let turned: f64 = (0..2).map(|i| flight.bounds[i][0] * reach(i)).sum();
+            let turned: f64 = (0..2).map(|i| flight.bounds[i][0] * reach[i]).sum();
             let most = flight.velocity.norm() + turned;
             most * most / width
         } else {
@@ -457,21 +449,51 @@ impl Parting<'_> {
     }
 }
 
+impl<'a> Parting<'a> {
+    /// The wider one of two gaps.
+    #[inline(always)]
+    fn or(self, normal: Vector, features: [Option<&'a Feature>; 2], width: f64) -> Self {
+        if width > self.width {
+            Self {
+                normal,
+                width,
+                features,
+                ..self
+            }
+        } else {
+            self
+        }
+    }
+}
+
+/// The gap of two parts along a unit vector.
+#[inline(always)]
+fn width(n: Vector, apart: Vector, pieces: [&Piece; 2], frames: Frames) -> f64 {
+    let first = frames[0].0.inverse().rotate(n * -1.0);
+    let second = frames[1].0.inverse().rotate(n);
+    n.dot(apart)
+        - pieces[0].support(first, Vector::default()).0
+        - pieces[1].support(second, Vector::default()).0
+}
+
+/// The matrix B of what is round of a part, in space.
+#[inline(always)]
+fn round(piece: &Piece, axes: Quaternion) -> Symmetric {
+    let back = axes.inverse();
+    let x = axes.rotate(piece.round * back.rotate(Vector::new(1.0, 0.0, 0.0)));
+    let y = axes.rotate(piece.round * back.rotate(Vector::new(0.0, 1.0, 0.0)));
+    let z = axes.rotate(piece.round * back.rotate(Vector::new(0.0, 0.0, 1.0)));
+    Symmetric::from_rows([x.parts(), y.parts(), z.parts()])
+}
+
 /// The plane that parts two convex parts most, from the normal that did so last.
 #[inline(always)]
 fn parting<'a>(apart: Vector, pieces: [&'a Piece; 2], frames: Frames, last: Vector) -> Parting<'a> {
-    let width = |n: Vector| {
-        let support = |i: usize, sign: f64| {
-            let u = frames[i].0.inverse().rotate(n * sign);
-            pieces[i].support(u, Vector::default()).0
-        };
-        n.dot(apart) - support(0, -1.0) - support(1, 1.0)
-    };
     if pieces[1].kind == PieceKind::Plane {
         return Parting {
             normal: UP,
             turning: Vector::default(),
-            width: width(UP),
+            width: width(UP, apart, pieces, frames),
             features: [None, None],
         };
     }
@@ -480,19 +502,7 @@ fn parting<'a>(apart: Vector, pieces: [&'a Piece; 2], frames: Frames, last: Vect
     } else {
         last
     };
-    let rounds = [0, 1].map(|i| {
-        let axes = frames[i].0;
-        let columns = [
-            Vector::new(1.0, 0.0, 0.0),
-            Vector::new(0.0, 1.0, 0.0),
-            Vector::new(0.0, 0.0, 1.0),
-        ]
-        .map(|unit| {
-            axes.rotate(pieces[i].round * axes.inverse().rotate(unit))
-                .parts()
-        });
-        Symmetric::from_rows(columns)
-    });
+    let rounds = [round(pieces[0], frames[0].0), round(pieces[1], frames[1].0)];
     let sharp = rounds.iter().all(|round| *round == Symmetric::default());
     let mut best = Parting {
         normal: start,
@@ -500,57 +510,74 @@ fn parting<'a>(apart: Vector, pieces: [&'a Piece; 2], frames: Frames, last: Vect
         width: f64::NEG_INFINITY,
         features: [None, None],
     };
-    let mut consider = |normal: Vector, features: [Option<&'a Feature>; 2]| {
-        let width = width(normal);
-        if width > best.width {
-            best = Parting {
-                normal,
-                width,
-                features,
-                ..best
-            };
-        }
-    };
     for (i, sign) in [(0, -1.0), (1, 1.0)] {
         for face in &pieces[i].features {
             if let Some(normal) = face.normal {
                 let mut features = [None, None];
                 features[i] = Some(face);
-                consider(frames[i].0.rotate(normal) * sign, features);
+                let normal = frames[i].0.rotate(normal) * sign;
+                best = best.or(normal, features, width(normal, apart, pieces, frames));
             }
         }
     }
-    for one in pieces[0].features.iter().filter(|one| one.normal.is_none()) {
-        for two in pieces[1].features.iter().filter(|two| two.normal.is_none()) {
-            let count = one.ties.len() + two.ties.len();
+    let [a, b] = [frames[0].0, frames[1].0];
+    for one in &pieces[0].features {
+        if one.normal.is_some() {
+            continue;
+        }
+        let corner = apart + a.rotate(one.corner);
+        let first = one.ties.first().map(|&tie| a.rotate(tie));
+        for two in &pieces[1].features {
             // Corners of polyhedra touch only by chance, and faces and edges part them as well.
-            if sharp && count < 2 {
+            if two.normal.is_some() || sharp && one.ties.len() + two.ties.len() < 2 {
                 continue;
             }
-            let features = [Some(one), Some(two)];
-            let [a, b] = [0, 1].map(|i| frames[i].0);
-            let ties = one.ties.iter().map(|&tie| a.rotate(tie));
-            let ties: [Option<Vector>; 2] = {
-                let mut all = ties.chain(two.ties.iter().map(|&tie| b.rotate(tie)));
-                [all.next(), all.next()]
-            };
-            if let [Some(e), Some(f)] = ties {
-                let across = e.cross(f);
-                let square = across.dot(across);
-                if square > 1e-20 * e.dot(e) * f.dot(f) {
+            let second = two.ties.first().map(|&tie| b.rotate(tie));
+            let between = corner - b.rotate(two.corner);
+            let normal = match (first, second) {
+                (Some(e), Some(f)) => {
+                    let across = e.cross(f);
+                    let square = across.dot(across);
+                    if square <= 1e-20 * e.dot(e) * f.dot(f) {
+                        continue;
+                    }
                     let side = if across.dot(apart) < 0.0 { -1.0 } else { 1.0 };
-                    consider(across * (side / square.sqrt()), features);
+                    across * (side / square.sqrt())
                 }
-                continue;
-            }
-            let between = apart + a.rotate(one.corner) - b.rotate(two.corner);
-            if let Some(normal) = freely(between, &rounds, ties[0], start) {
-                consider(normal, features);
+                (tie, other) => match freely(between, &rounds, tie.or(other), start) {
+                    Some(normal) => normal,
+                    None => continue,
+                },
+            };
+            // No gap is wider than what is between two points of the bodies.
+            if normal.dot(between) > best.width {
+                let width = width(normal, apart, pieces, frames);
+                best = best.or(normal, [Some(one), Some(two)], width);
             }
         }
     }
     best.turning = turning(&best, frames);
     best
+}
+
+/// The largest distance of a point of a part from the centre of mass.
+#[inline(always)]
+fn reach(piece: &Piece) -> f64 {
+    match piece.kind {
+        PieceKind::Ball(_, radius) => piece.reach + radius,
+        _ => piece.reach,
+    }
+}
+
+/// A direction and its rate of change in the axes of a body that turns.
+#[inline(always)]
+fn direction(
+    d: Vector,
+    change: Vector,
+    (attitude, spin): (Quaternion, Vector),
+) -> (Vector, Vector) {
+    let back = attitude.inverse();
+    (back.rotate(d), back.rotate(change + d.cross(spin)))
 }
 
 /// The unit vector that maximises **n**·**Y** − √(**n**·B₁**n**) − √(**n**·B₂**n**) among those perpendicular to `tie`, if it is given.
@@ -561,20 +588,11 @@ fn freely(
     tie: Option<Vector>,
     start: Vector,
 ) -> Option<Vector> {
-    let onto = |v: Vector| {
-        let v = match tie {
-            Some(tie) => v - tie * (v.dot(tie) / tie.dot(tie)),
-            None => v,
-        };
-        let size = v.norm();
-        (size > 0.0).then(|| v / size)
+    let mut n = match untied(start, tie) {
+        Some(n) => n,
+        None => untied(between, tie)?,
     };
-    let mut n = onto(start).or_else(|| onto(between))?;
-    let value = |n: Vector| {
-        let round: f64 = rounds.iter().map(|b| n.dot(*b * n).max(0.0).sqrt()).sum();
-        n.dot(between) - round
-    };
-    let mut now = value(n);
+    let mut now = parted(n, between, rounds);
     for _ in 0..ROUNDS {
         let first = tie.map_or_else(|| n.across(), |tie| tie / tie.norm());
         let second = n.cross(first);
@@ -588,7 +606,7 @@ fn freely(
                 continue;
             }
             let part = 1.0 / square.sqrt();
-            let [a, b] = [first, second].map(|t| t.dot(pushed) * part);
+            let (a, b) = (first.dot(pushed) * part, second.dot(pushed) * part);
             slope = [slope[0] - a, slope[1] - b];
             aa += (first.dot(*round * first) - a * a) * part;
             ab += (first.dot(*round * second) - a * b) * part;
@@ -616,8 +634,8 @@ fn freely(
         let mut part = (0.7 / size).min(1.0);
         let step = first * x + second * y;
         loop {
-            let next = onto(step.mul_add(part, n))?;
-            let there = value(next);
+            let next = untied(step.mul_add(part, n), tie)?;
+            let there = parted(next, between, rounds);
             if there >= now || part * size < 1e-7 {
                 (n, now) = (next, there);
                 break;
@@ -629,6 +647,25 @@ fn freely(
         }
     }
     Some(n)
+}
+
+/// The unit vector along the part of a vector that is perpendicular to a tie, if it is given.
+#[inline(always)]
+fn untied(v: Vector, tie: Option<Vector>) -> Option<Vector> {
+    let v = match tie {
+        Some(tie) => v - tie * (v.dot(tie) / tie.dot(tie)),
+        None => v,
+    };
+    let size = v.norm();
+    if size > 0.0 { Some(v / size) } else { None }
+}
+
+/// What [`freely`] maximises.
+#[inline(always)]
+fn parted(n: Vector, between: Vector, rounds: &[Symmetric; 2]) -> f64 {
+    let [one, two] = rounds;
+    let round = n.dot(*one * n).max(0.0).sqrt() + n.dot(*two * n).max(0.0).sqrt();
+    n.dot(between) - round
 }
 
 /// **n**′ such that **n** stays perpendicular to the edges that touch.
@@ -662,12 +699,16 @@ fn turning(parting: &Parting<'_>, frames: Frames) -> Vector {
 /// Attitudes, and ω in space.
 #[inline(always)]
 fn frames(poses: &[BodyPose; 2]) -> Frames {
-    let frame = |pose: &BodyPose| match pose {
+    [frame(&poses[0]), frame(&poses[1])]
+}
+
+#[inline(always)]
+fn frame(pose: &BodyPose) -> (Quaternion, Vector) {
+    match pose {
         BodyPose::Any(attitude, spin) => (*attitude, attitude.rotate(*spin)),
         // Of balls on an axis: a rotation that takes the axis where it is.
         BodyPose::Axis(axis, [e, change, _]) => (BodyPose::about(*axis, *e), e.cross(*change)),
-    };
-    [frame(&poses[0]), frame(&poses[1])]
+    }
 }
 
 /// Both bodies at a time.

@@ -24,6 +24,7 @@ use crate::simd::Level;
 use crate::threads::{Monitor, Resources};
 use crate::{Error, memory};
 use moments::{SpeciesSums, Whole};
+use pulp::{Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
 use std::sync::Mutex;
@@ -484,13 +485,37 @@ impl Particle {
     }
 }
 
-/// Turns a body for a time.
+/// A body that turns for a time.
+struct Turning<'a> {
+    particle: &'a mut Particle,
+    body: &'a Partner,
+    time: f64,
+}
+
+impl WithSimd for Turning<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self {
+            particle,
+            body,
+            time,
+        } = self;
+        let attitude = particle.attitude * body.axes;
+        let spin = attitude.inverse().rotate(particle.spin);
+        let (attitude, spin) = Rotation::new(body.top, attitude, spin).at(time);
+        particle.attitude = attitude * body.axes.inverse();
+        particle.spin = attitude.rotate(spin);
+    }
+}
+
 fn turn(particle: &mut Particle, body: &Partner, time: f64) {
-    let attitude = particle.attitude * body.axes;
-    let spin = attitude.inverse().rotate(particle.spin);
-    let (attitude, spin) = Rotation::new(body.top, attitude, spin).at(time);
-    particle.attitude = attitude * body.axes.inverse();
-    particle.spin = attitude.rotate(spin);
+    Level::run_scalar(Turning {
+        particle,
+        body,
+        time,
+    });
 }
 
 /// Takes the mean velocity off, and scales velocities and the parts of ω to the energies of the temperatures.

@@ -39,12 +39,17 @@ impl Compliance {
     }
 
     /// I/m + \[**r**\]ᵀJ⁻¹\[**r**\]: that of a body with mass m and the inverse tensor of inertia J⁻¹, hit at **r** from its centre of mass.
+    #[inline]
     pub fn of_body(mass: f64, inverse_inertia: &Symmetric, arm: Vector) -> Self {
         // Column i of [r] is r × e_i.
         let x = Vector::new(0.0, arm.z, -arm.y);
         let y = Vector::new(-arm.z, 0.0, arm.x);
         let z = Vector::new(arm.y, -arm.x, 0.0);
-        let [jx, jy, jz] = [x, y, z].map(|column| *inverse_inertia * column);
+        let [jx, jy, jz] = [
+            *inverse_inertia * x,
+            *inverse_inertia * y,
+            *inverse_inertia * z,
+        ];
         let dot = |a: Vector, b: Vector| a.x * b.x + a.y * b.y + a.z * b.z;
         let free = 1.0 / mass;
         Self(Symmetric {

@@ -32,7 +32,8 @@ enum Way {
     /// Half the rate and the direction of **Λ**/J, then λ about an axis.
     Precession((f64, Vector), f64, usize),
     Elliptic(Elliptic),
-    Series(Series),
+    /// Rare, and four times as large as all else, so that it is not moved about with the others.
+    Series(Box<Series>),
 }
 
 impl Rotation {
@@ -43,7 +44,7 @@ impl Rotation {
         let way = match top.symmetry() {
             Symmetry::Asymmetric if !rests => match Elliptic::new(&top, attitude, spin) {
                 Some(elliptic) => Way::Elliptic(elliptic),
-                None => Way::Series(Series::new(&top, attitude, spin)),
+                None => Way::Series(Box::new(Series::new(&top, attitude, spin))),
             },
             Symmetry::About(axis) if !rests => {
                 let moments = top.moments();
@@ -91,7 +92,7 @@ impl Rotation {
             Way::Elliptic(elliptic) => elliptic.at(time),
             Way::Series(series) => {
                 if time < series.start() {
-                    *series = Series::new(&self.top, self.attitude, self.spin);
+                    **series = Series::new(&self.top, self.attitude, self.spin);
                 }
                 let (attitude, spin) = series.at(&self.top, time);
                 let lost = energy_error(self.top.moments(), self.spin.parts(), spin.parts());

@@ -155,6 +155,39 @@ impl FreeBody {
         let spin = attitude.inverse().rotate(state.spin);
         Self { attitude, spin }
     }
+
+    #[inline(always)]
+    fn state(&self, body: &Partner, position: Vector, velocity: Vector) -> PairState {
+        PairState {
+            position,
+            velocity,
+            attitude: self.attitude * body.axes.inverse(),
+            spin: self.attitude.rotate(self.spin),
+        }
+    }
+
+    #[inline(always)]
+    fn pose(&self) -> BodyPose {
+        BodyPose::Any(self.attitude, self.spin)
+    }
+
+    /// The velocity of a point relative to the centre of mass.
+    #[inline(always)]
+    fn moves(&self, arm: Vector) -> Vector {
+        self.attitude.rotate(self.spin).cross(arm)
+    }
+
+    /// K of the body at a point, in axes to which `back` turns those of space.
+    #[inline(always)]
+    fn compliance(&self, body: &Partner, back: Quaternion, arm: Vector) -> Compliance {
+        let inverse = Symmetric::turned(body.inverse_moments, back * self.attitude);
+        Compliance::of_body(1.0 / body.inverse_mass, &inverse, back.rotate(arm))
+    }
+
+    #[inline(always)]
+    fn turn(&self, body: &Partner) -> (Turn, [f64; 2]) {
+        Turn::new(&body.top, body.axis, self.attitude, self.spin)
+    }
 }
 
 impl Following<'_, '_> {
@@ -166,10 +199,10 @@ impl Following<'_, '_> {
             pieces: bodies.map(|body| &body.pieces[..]),
             size: reach,
         };
-        let mut turning: [FreeBody; 2] =
-            std::array::from_fn(|i| FreeBody::new(bodies[i], &self.states[i]));
-        let mut velocities = self.states.map(|state| state.velocity);
-        let mut places = self.states.map(|state| state.position);
+        let [one, two] = &self.states;
+        let mut turning = [FreeBody::new(bodies[0], one), FreeBody::new(bodies[1], two)];
+        let mut velocities = [one.velocity, two.velocity];
+        let mut places = [one.position, two.position];
         let (mut departure, mut unresolved) = (None, 0);
         let (mut clock, mut contacts, mut steps) = (0.0, 0, 0);
         let ending = loop {
@@ -231,17 +264,12 @@ impl Following<'_, '_> {
                 break Ending::Collapse;
             }
         };
-        let states = std::array::from_fn(|i| {
-            let FreeBody { attitude, spin } = turning[i];
-            PairState {
-                position: places[i],
-                velocity: velocities[i],
-                attitude: attitude * bodies[i].axes.inverse(),
-                spin: attitude.rotate(spin),
-            }
-        });
+        let [one, two] = turning;
         Ok(Outcome {
-            states,
+            states: [
+                one.state(bodies[0], places[0], velocities[0]),
+                two.state(bodies[1], places[1], velocities[1]),
+            ],
             time: clock,
             contacts,
             ending,
@@ -308,7 +336,7 @@ impl Following<'_, '_> {
         let bodies = self.bodies;
         let apart = places[0] - places[1];
         let velocity = velocities[0] - velocities[1];
-        let poses = [0, 1].map(|i| BodyPose::Any(turning[i].attitude, turning[i].spin));
+        let poses = [turning[0].pose(), turning[1].pose()];
         let [row, column] = touch.parts;
         let between = &self.between[row * bodies[1].pieces.len() + column];
         // One point for both, so that the angular momentum stays what it is.
@@ -316,13 +344,10 @@ impl Following<'_, '_> {
         let arms = [first, first + apart];
         let frame = frame(normal);
         let back = frame.inverse();
-        let [k1, k2] = [0, 1].map(|i| {
-            let inverse = Symmetric::turned(bodies[i].inverse_moments, back * turning[i].attitude);
-            Compliance::of_body(1.0 / bodies[i].inverse_mass, &inverse, back.rotate(arms[i]))
-        });
-        let own = [0, 1].map(|i| turning[i].attitude.rotate(turning[i].spin).cross(arms[i]));
-        let met = back.rotate(velocity + own[0] - own[1]); // (7)
-        let compliance = k1 + k2;
+        let [one, two] = &*turning;
+        let compliance =
+            one.compliance(bodies[0], back, arms[0]) + two.compliance(bodies[1], back, arms[1]);
+        let met = back.rotate(velocity + one.moves(arms[0]) - two.moves(arms[1])); // (7)
         let answer = if self.law.deviation > 0.0 {
             self.law
                 .answer_drawn(&compliance, met, (self.chance)(number))
@@ -358,15 +383,13 @@ fn flight(
     velocity: Vector,
     turning: &[FreeBody; 2],
 ) -> PairFlight {
-    let [one, two] = [0, 1].map(|i| {
-        let (body, FreeBody { attitude, spin }) = (bodies[i], turning[i]);
-        Turn::new(&body.top, body.axis, attitude, spin)
-    });
+    let (one, first) = turning[0].turn(bodies[0]);
+    let (two, second) = turning[1].turn(bodies[1]);
     PairFlight {
         apart,
         velocity,
-        turns: [one.0, two.0],
-        bounds: [one.1, two.1],
+        turns: [one, two],
+        bounds: [first, second],
     }
 }
 
