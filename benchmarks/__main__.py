@@ -7,14 +7,14 @@ from time import perf_counter
 from typing import Any
 
 import restitution as rs
-from benchmarks import agreement, bodies, footprint, machine, studies, timing
+from benchmarks import agreement, bodies, encounters, footprint, machine, studies, timing
 from benchmarks.peers import Peers, available, statistics
 from benchmarks.work import Peer, Work
 
 CHECKED = 5000  # particles of the fast peers
 WINDOW = 8  # of the impact velocity: 0.40 to 0.45 m/s
 LONG = 500_000  # particles
-PARTS = ("planar", "bodies", "loops", "threads", "memory", "studies")
+PARTS = ("planar", "bodies", "loops", "threads", "encounters", "memory", "studies")
 
 
 def check(peers: Peers, work: Work, particles: int) -> None:
@@ -105,7 +105,7 @@ def main() -> None:
         "--rows", nargs="+", choices=PARTS, default=PARTS, help="which tables (default: all of them)"
     )
     parser.add_argument(
-        "--only", default="", help="of bodies, threads and memory: rows whose name contains this"
+        "--only", default="", help="of bodies, threads, encounters and memory: rows whose name contains this"
     )
     parser.add_argument("--rounds", type=int, default=9, help="how often each row is timed (default 9)")
     parser.add_argument("--particles", type=int, default=25_000, help="of the planar job (default 25000)")
@@ -130,6 +130,9 @@ def main() -> None:
     if "threads" in options.rows:
         print(f"\n{bodies.HEAD}   one thread over two; ns with two")
         show(bodies.threads(options.rounds, options.only))
+    if "encounters" in options.rows:
+        print(f"\n{bodies.HEAD}   over the target; one thread, ns an encounter or a collision")
+        show(encounters.table(options.rounds, options.only))
     if "memory" in options.rows:
         rest(options.long, options.only)
     if "studies" in options.rows:
