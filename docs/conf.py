@@ -116,7 +116,7 @@ CARDS = {
     "rough": ("rough-bodies.png", 0.52, 0.08, 0.24),
     "imperfections": ("imperfections.png", 0.08, 0.02, 0.4),
     "homework": ("impulses.png", 0.67, 0.62, 0.33),
-    "gas": ("cooling.png", 0.0, 0.2, 0.34),
+    "gas": ("gas_of_spheres.png", 0.0, 0.2, 0.34),
     "shapes": ("shapes.png", 0.0, 0.02, 0.66),
     "records": ("locking.png", 0.54, 0.0, 0.46),
     "names": ("impact.png", 0.53, 0.22, 0.44),

@@ -139,13 +139,30 @@ def laws(contacts: int, images: Path | None) -> str:
 
 
 def gas(particles: int, images: Path | None) -> str:
-    """Make the table and the figure of examples/gas.py."""
-    script = _script("gas")
-    gases = script.measure(particles)
+    """Make the tables and figures of the four scripts of gases."""
+    share = 1.0 if images else 0.02
+    tables = []
+    for name, few in (("gas", 1), ("gas_of_spheres", 2)):
+        script = _script(name)
+        gases = script.measure(particles // few, share)
+        if images is not None:
+            for style in SITE:
+                script.draw(gases, style=style).savefig(images / f"{name}{style[4:]}.png", dpi=200)
+        tables.append(script.table(gases))
+    friction, literature = _script("gas_friction"), _script("gas_literature")
+    tables.append(friction.table(particles, share * friction.COLLISIONS))
+    tables.append(literature.table(particles, share))
+    return "\n\n".join(tables)
+
+
+def pairs(encounters: int, images: Path | None) -> str:
+    """Make the tables and the figure of examples/pairs.py."""
+    script = _script("pairs")
+    found = script.measure(encounters)
     if images is not None:
         for style in SITE:
-            script.draw(gases, style=style).savefig(images / f"gas{style[4:]}.png", dpi=200)
-    return str(script.table(gases))
+            script.draw(found, style=style).savefig(images / f"pairs{style[4:]}.png", dpi=200)
+    return str(script.table(found))
 
 
 def dice(particles: int, images: Path | None) -> str:
@@ -184,11 +201,12 @@ BLOCKS = {
     "dice": Block(dice, 1000, 5, ("dice.png",)),
     "energy": Block(energy, 10_000_000, 20_000, ("laws.png",)),
     "fits": Block(fits, 4000, 100),
-    "gas": Block(gas, 20_000, 40, ("gas.png",)),
+    "gas": Block(gas, 20_000, 80, ("gas.png", "gas_of_spheres.png")),
     "imperfections": Block(imperfections, 100, 4, ("imperfections.png",)),
     "laws": Block(laws, 0, 0),
     "names": Block(names, 0, 0),
     "near-round": Block(locking, 5000, 100, ("locking.png",)),
+    "pairs": Block(pairs, 200_000, 1000, ("pairs.png",)),
     "real-collisions": Block(real_collisions, 1, 15, ("real-collisions.png",)),
     "shapes": Block(golf, 0, 0, ("golf.png",)),
     "theory": Block(theory, 100, 1),

@@ -40,11 +40,11 @@ def body(elongation: float) -> rs.Dumbbell:
     return rs.Dumbbell(radius=RADIUS, separation=elongation * RADIUS)
 
 
-def measure(particles: int) -> dict[float, xr.Dataset]:
-    """Cool gases of dumbbells, by L/R."""
+def measure(particles: int, share: float = 1.0) -> dict[float, xr.Dataset]:
+    """Cool gases of dumbbells, by L/R, for this share of the collisions."""
     more = {"particles": particles, "samples": 100}
     return {
-        elongation: rs.gas.cool(body(elongation), LAW, collisions=collisions, **GAS, **more)
+        elongation: rs.gas.cool(body(elongation), LAW, collisions=share * collisions, **GAS, **more)
         for elongation, collisions in COLLISIONS.items()
     }
 
