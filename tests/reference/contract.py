@@ -14,6 +14,7 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 import restitution as rs
 from reference import calls, measuring, methods
@@ -204,8 +205,9 @@ def judged(name: str, text: str, argument: str, bad: Any) -> str | None:
         value = line.removeprefix(f"{argument} = ")
         # As the parameter holds it.
         kept = str(bad) if isinstance(bad, Path) else bad
-        if isinstance(bad, list):
-            kept = tuple(one.item() if isinstance(one, np.generic) else one for one in bad)
+        if isinstance(bad, list | np.ndarray | xr.DataArray):
+            parts = bad if isinstance(bad, list) else np.asarray(bad).ravel()
+            kept = tuple(one.item() if isinstance(one, np.generic) else one for one in parts)
         alike = (shown(bad), shown(kept))
         if value != line and not value.startswith(alike) and not _same_number(value, bad):
             return f"shows another value than {shown(bad)}: {text}"

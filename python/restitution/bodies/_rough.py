@@ -13,7 +13,6 @@ from restitution._internal.parameters import (
     ParameterError,
     TooLargeError,
     Whole,
-    plain_number,
     wrong,
 )
 from restitution._internal.resources import available_memory
@@ -45,12 +44,10 @@ def _heights(value: Any) -> Any:
             raise ParameterError(wrong("heights", value, _HEIGHTS))
         numbers = reals("heights", numbers, _HEIGHTS, unit="m", dimensions=(1,)).tolist()
         return (name, *numbers)
-    if np.ndim(plain_number(value)) == 0:
-        return float(reals("heights", value, _HEIGHTS, unit="m", dimensions=(0,)))
-    each = reals("heights", value, _HEIGHTS, unit="m", dimensions=(1,)).tolist()
-    if not each:
+    found = reals("heights", value, _HEIGHTS, unit="m", dimensions=(0, 1))
+    if found.size == 0:
         raise ParameterError(wrong("heights", value, _HEIGHTS))
-    return tuple(each)
+    return tuple(found.tolist()) if found.ndim else float(found)
 
 
 def _body(value: Any) -> Any:
