@@ -7,7 +7,7 @@ from importlib.metadata import version as version_of
 from pathlib import Path
 
 from docutils import nodes
-from PIL import Image
+from PIL import Image, ImageOps
 from sphinx.ext import autosummary
 from sphinx.pycode import ModuleAnalyzer
 
@@ -96,35 +96,35 @@ if site := os.environ.get("RESTITUTION_SITE"):
         "name=twitter:card": "summary_large_image",
     }
 
-# The picture on a card is a piece of a figure, so small that its letters can be read: its file, where its
-# left and its top are, and its width, as shares of those of the figure.
+# The picture on a card is a figure of one panel, or a panel of a figure, whole: its file, and its left, top,
+# right and bottom as shares of the width and the height.
 CARDS = {
-    "theorist": ("first-impact.png", 0.5, 0.16, 0.5),
-    "experimenter": ("roundness.png", 0.55, 0.0, 0.44),
-    "dem": ("golf.png", 0.02, 0.0, 0.44),
-    "lecturer": ("impulses.png", 0.335, 0.12, 0.33),
-    "first-impact": ("first-impact.png", 0.02, 0.52, 0.46),
-    "physics": ("impact.png", 0.03, 0.22, 0.44),
-    "laws": ("laws.png", 0.27, 0.06, 0.45),
-    "energy": ("laws.png", 0.02, 0.77, 0.48),
-    "paper": ("fig2.png", 0.0, 0.2, 0.8),
-    "fits": ("fits.png", 0.66, 0.0, 0.34),
-    "theory": ("fits.png", 0.66, 0.5, 0.34),
-    "near-round": ("near_round.png", 0.01, 0.1, 0.36),
-    "real-collisions": ("real-collisions.png", 0.02, 0.52, 0.46),
-    "dice": ("dice.png", 0.02, 0.05, 0.46),
-    "rough": ("rough-bodies.png", 0.52, 0.08, 0.24),
-    "imperfections": ("imperfections.png", 0.08, 0.02, 0.4),
-    "homework": ("impulses.png", 0.67, 0.62, 0.33),
-    "gas": ("gas_of_spheres.png", 0.0, 0.2, 0.34),
-    "shapes": ("shapes.png", 0.0, 0.02, 0.66),
-    "records": ("locking.png", 0.54, 0.0, 0.46),
-    "names": ("impact.png", 0.53, 0.22, 0.44),
-    "studies": ("near_round_maps.png", 0.02, 0.04, 0.4),
-    "listening": ("clock.png", 0.05, 0.3, 0.5),
-    "roundness": ("required.png", 0.56, 0.05, 0.43),
-    "inference": ("calibration.png", 0.0, 0.0, 0.36),
-    "lab-sheet": ("lab-sheet.png", 0.0, 0.1, 0.5),
+    "theorist": ("first-impact.png", 0.505, 0.0, 1.0, 0.5),
+    "experimenter": ("roundness.png", 0.0, 0.0, 1.0, 1.0),
+    "dem": ("golf.png", 0.0, 0.0, 0.5, 1.0),
+    "lecturer": ("impulses.png", 0.333, 0.0, 0.667, 0.5),
+    "first-impact": ("first-impact.png", 0.0, 0.5, 0.5, 1.0),
+    "physics": ("impact.png", 0.0, 0.0, 0.5, 1.0),
+    "laws": ("laws.png", 0.265, 0.055, 0.505, 0.31),
+    "energy": ("laws.png", 0.0, 0.765, 0.485, 1.0),
+    "paper": ("fig2.png", 0.0, 0.0, 1.0, 1.0),
+    "fits": ("fits.png", 0.668, 0.0, 1.0, 0.5),
+    "theory": ("fits.png", 0.668, 0.505, 1.0, 1.0),
+    "near-round": ("near_round.png", 0.0, 0.0, 0.345, 1.0),
+    "real-collisions": ("real-collisions.png", 0.0, 0.5, 0.5, 1.0),
+    "dice": ("dice.png", 0.0, 0.0, 0.48, 1.0),
+    "rough": ("rough-bodies.png", 0.52, 0.0, 0.76, 0.48),
+    "imperfections": ("imperfections.png", 0.0, 0.0, 0.455, 0.472),
+    "homework": ("impulses.png", 0.667, 0.5, 1.0, 1.0),
+    "gas": ("gas_of_spheres.png", 0.0, 0.115, 0.335, 1.0),
+    "shapes": ("shapes.png", 0.0, 0.0, 1.0, 1.0),
+    "records": ("locking.png", 0.535, 0.0, 1.0, 1.0),
+    "names": ("impact.png", 0.5, 0.0, 1.0, 1.0),
+    "studies": ("near_round_maps.png", 0.0, 0.0, 0.29, 0.462),
+    "listening": ("clock.png", 0.0, 0.0, 1.0, 1.0),
+    "roundness": ("required.png", 0.0, 0.0, 1.0, 1.0),
+    "inference": ("calibration.png", 0.0, 0.0, 0.33, 1.0),
+    "lab-sheet": ("lab-sheet.png", 0.0, 0.0, 1.0, 1.0),
 }
 
 
@@ -132,12 +132,12 @@ def _cards() -> None:
     """Cut the pictures of the cards out of the figures, and out of those for the dark."""
     folder = BUILT.parent / "cards"
     folder.mkdir(exist_ok=True)
-    for name, (figure, left, top, width) in CARDS.items():
+    for name, (figure, *edges) in CARDS.items():
         for path in {HERE / "images" / figure, _dark(HERE / "images" / figure)}:
-            with Image.open(path) as whole:
-                x, y, wide = left * whole.width, top * whole.height, width * whole.width
-                part = whole.crop((x, y, x + wide, y + wide / 1.9)).convert("RGB")
-            part.thumbnail((640, 640))
+            with Image.open(path) as drawn:
+                whole = drawn.convert("RGB")
+            part = whole.crop([share * whole.size[k % 2] for k, share in enumerate(edges)])
+            part = ImageOps.pad(part, (640, 336), color=whole.getpixel((0, 0)))
             part.save(folder / f"{name}{'-dark' * path.stem.endswith('-dark')}.png")
 
 
