@@ -120,7 +120,7 @@ CARDS = {
     "shapes": ("shapes.png", 0.0, 0.0, 1.0, 1.0),
     "records": ("locking.png", 0.535, 0.0, 1.0, 1.0),
     "names": ("impact.png", 0.5, 0.0, 1.0, 1.0),
-    "studies": ("near_round_maps.png", 0.0, 0.0, 0.29, 0.462),
+    "studies": ("near_round_maps.png", 0.0, 0.0, 0.29, 0.475),
     "listening": ("clock.png", 0.0, 0.0, 1.0, 1.0),
     "roundness": ("required.png", 0.0, 0.0, 1.0, 1.0),
     "inference": ("calibration.png", 0.0, 0.0, 0.33, 1.0),
