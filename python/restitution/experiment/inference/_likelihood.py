@@ -15,7 +15,7 @@ _STRAY = 0.02
 """Weight of a wide Gaussian, three times as wide, so that no density is 0."""
 _COMPARED = 4
 """Of the numbers of a series, those whose density this is; the others are for the predictive check."""
-_REACH, _NODES = 6.0, 61
+_REACH, _NODES = 6.0, 121
 """Standard deviations on both sides that nodes of a likelihood reach, and their number."""
 IMPOSSIBLE = -1e4
 """Logarithm of a likelihood that is none."""
