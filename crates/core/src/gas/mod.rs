@@ -486,13 +486,13 @@ impl Particle {
 }
 
 /// A body that turns for a time.
-struct Turning<'a> {
+struct TurningParticle<'a> {
     particle: &'a mut Particle,
     body: &'a Partner,
     time: f64,
 }
 
-impl WithSimd for Turning<'_> {
+impl WithSimd for TurningParticle<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -511,7 +511,7 @@ impl WithSimd for Turning<'_> {
 }
 
 fn turn(particle: &mut Particle, body: &Partner, time: f64) {
-    Level::run_scalar(Turning {
+    Level::run_scalar(TurningParticle {
         particle,
         body,
         time,
