@@ -157,36 +157,6 @@ def test_ten_drops_of_a_hollow_dumbbell_tell_its_shape_if_its_wall_is_known(seed
     assert ratio[0] / ratio[1] == pytest.approx(np.sqrt(0.4 / 0.6535), abs=0.08)
 
 
-def unlike_drops(between: float, seed: int) -> tuple[float, float]:
-    """Return the interval of 90 % from five round drops whose ε_n differ by this from drop to drop."""
-    drops = []
-    for number in range(5):
-        rng = np.random.default_rng([seed, number, 7])
-        normal = NORMAL + between * rng.standard_normal()
-        flights = 2.0 * np.sqrt(2.0 * 9.81 * 0.1) / 9.81 * normal ** np.arange(1, 15)
-        drops.append(heard(np.append(0.0, np.cumsum(flights)), 100 * seed + number))
-    low, high = np.quantile(inferred(drops)["posterior"].to_dataset().normal, (0.05, 0.95))
-    return float(low), float(high)
-
-
-@pytest.mark.slow
-def test_the_mean_of_drops_that_differ_is_covered(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of 40 sets intervals of 90 % cover in fewer than 31 with a probability of 0.005."""
-    for name in ("_SHAPES", "_SCATTERS"):
-        monkeypatch.setattr(f"restitution.experiment.inference._posterior.{name}", 2)
-    ends = [unlike_drops(0.002, seed) for seed in range(1, 41)]
-    assert sum(low < NORMAL < high for low, high in ends) >= 31
-    assert 0.001 < np.median([high - low for low, high in ends]) < 0.008
-
-
-@pytest.mark.slow
-def test_drops_that_do_not_differ_are_hardly_wider_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("_SHAPES", "_SCATTERS"):
-        monkeypatch.setattr(f"restitution.experiment.inference._posterior.{name}", 2)
-    low, high = unlike_drops(0.0, 1)
-    assert low < NORMAL < high < low + 2e-4
-
-
 def test_errors_of_the_times_suffice_for_a_round_ball() -> None:
     tree = inferred([round_ball(0.0, 40 + i) for i in range(3)])
     assert tree.attrs["explained_by"] == "neither"
