@@ -2,7 +2,7 @@
 
 Run ``python examples/fits.py OUT`` to write ``fits.png``, ``fits-dark.png``, ``fits.txt`` (the caption) and
 ``fits.md`` (the tables of docs/fits.md) into the folder OUT. A second argument is the number of particles,
-4000 unless given: a quarter of an hour on one core.
+4000 unless given: less than a minute on two cores.
 """
 
 import sys
