@@ -41,14 +41,19 @@ def _script(name: str) -> Any:
     return import_module(name)
 
 
+def _draw(script: Any, found: Any, images: Path | None, name: str) -> None:
+    """Draw the figure of a script, where there is a folder for it, for every ground of the site."""
+    if images is not None:
+        for style in SITE:
+            script.draw(found, style=style).savefig(images / f"{name}{style[4:]}.png", dpi=200)
+
+
 def energy(impacts: int, images: Path | None) -> str:
     """Make the table and the figure of `restitution laws`."""
     from restitution.figures import laws
 
     data = laws.measure(impacts, 1)
-    if images is not None:
-        for style in SITE:
-            laws.draw(data, style=style).savefig(images / f"laws{style[4:]}.png", dpi=200)
+    _draw(laws, data, images, "laws")
     return laws.table(data)
 
 
@@ -71,9 +76,7 @@ def imperfections(particles: int, images: Path | None) -> str:
     """Make the table and the figure of examples/imperfections.py."""
     script = _script("imperfections")
     found = script.measure(particles, 12 if images else 2)
-    if images is not None:
-        for style in SITE:
-            script.draw(found, style=style).savefig(images / f"imperfections{style[4:]}.png", dpi=200)
+    _draw(script, found, images, "imperfections")
     return str(script.table(found))
 
 
@@ -145,9 +148,7 @@ def gas(particles: int, images: Path | None) -> str:
     for name, few in (("gas", 1), ("gas_of_spheres", 2)):
         script = _script(name)
         gases = script.measure(particles // few, share)
-        if images is not None:
-            for style in SITE:
-                script.draw(gases, style=style).savefig(images / f"{name}{style[4:]}.png", dpi=200)
+        _draw(script, gases, images, name)
         tables.append(script.table(gases))
     friction, literature = _script("gas_friction"), _script("gas_literature")
     tables.append(friction.table(particles, share * friction.COLLISIONS))
@@ -159,9 +160,7 @@ def pairs(encounters: int, images: Path | None) -> str:
     """Make the tables and the figure of examples/pairs.py."""
     script = _script("pairs")
     found = script.measure(encounters)
-    if images is not None:
-        for style in SITE:
-            script.draw(found, style=style).savefig(images / f"pairs{style[4:]}.png", dpi=200)
+    _draw(script, found, images, "pairs")
     return str(script.table(found))
 
 

@@ -110,18 +110,6 @@ def along(epsilon: Callable[[Floats, float, np.random.Generator], Floats | float
     return rule
 
 
-def sonine(epsilon: float) -> float:
-    """a2 of the homogeneous cooling state (van Noije and Ernst 1998, d = 3)."""
-    e = epsilon
-    return 16.0 * (1.0 - e) * (1.0 - 2.0 * e**2) / (81.0 - 17.0 * e + 30.0 * e**2 * (1.0 - e))
-
-
-def haff(time: Floats, epsilon: float) -> Floats:
-    """θ/θ0 for constant ε: (1 + t/τ)⁻² with 1/τ = (1 - ε²)(1 + 3 a2/16) ν0/6."""
-    rate = (1.0 - epsilon**2) / 6.0 * (1.0 + 3.0 / 16.0 * sonine(epsilon))
-    return np.asarray((1.0 + rate * time) ** -2)
-
-
 THETA = 0.5
 """θ of translation at the beginning, in m²/s²."""
 RADIUS, DROP = 3e-3, 1.0
@@ -135,24 +123,24 @@ SHOWN = 0.1, 1.0
 """L/R of the gases whose temperatures are drawn, at the first of the NORMALS."""
 
 
-def dropped(body: rs.Dumbbell, law: rs.Frictionless, particles: int) -> dict[str, Rule]:
-    """Learn p(ε | v) of a body on a plane and of two bodies, as functions of v in m/s."""
-    heights = RADIUS + DROP * np.geomspace(
-        law.normal**2, 1.0, min(particles // 2, 100)
-    )  # so that no first impact stands out
+Restitution = Callable[[Floats, np.random.Generator], Floats]
+"""ε of pairs at speeds v in m/s, drawn."""
+
+
+def dropped(body: rs.Dumbbell, law: rs.Frictionless, pair: Restitution, particles: int) -> dict[str, Rule]:
+    """Make the rules of v in m/s; learn p(ε | v) of a body on a plane."""
+    # Spread, so that no first impact stands out.
+    heights = RADIUS + DROP * np.geomspace(law.normal**2, 1.0, min(particles // 2, 100))
     plane = rs.FluctuatingRestitution.learn(
         body, law, particles=particles, impacts=300, release_height=heights, velocities=(0.05, 4.0)
     ).clamped()
-    pair = met(body, law, 6 * particles)
     return {
         "plane": along(lambda v, _, rng: plane.rvs(v, random_state=rng, threads=1)),
         "pair": along(lambda v, _, rng: pair(v, rng)),
     }
 
 
-def met(
-    body: rs.Dumbbell, law: rs.Frictionless, encounters: int
-) -> Callable[[Floats, np.random.Generator], Floats]:
+def met(body: rs.Dumbbell, law: rs.Frictionless, encounters: int) -> Restitution:
     """Learn to draw ε, of the centres along their line, from encounters at T_rot = T_tr = T_0."""
     data = rs.PairKernel.learn(body, body, law, temperature_ratios=[1.0], **warm(body, encounters)).data
     data = data.sortby("centre_speed")
@@ -171,9 +159,8 @@ def warm(body: rs.Dumbbell, encounters: int) -> dict[str, Any]:
     return {"translational_temperature": body.mass * THETA, "encounters": encounters}
 
 
-def scaled(body: rs.Dumbbell, law: rs.Frictionless, encounters: int) -> dict[str, Rule]:
-    """Learn the rules that know the temperatures of the gas."""
-    pair = met(body, law, encounters)
+def scaled(body: rs.Dumbbell, law: rs.Frictionless, pair: Restitution, encounters: int) -> dict[str, Rule]:
+    """Make the rules that know the temperatures of the gas; learn encounters at any of them."""
     kernel = rs.PairKernel.learn(body, body, law, temperature_ratios=RATIOS, **warm(body, encounters))
 
     def whole(u: Floats, k: Floats, theta: float, rotation: float, rng: np.random.Generator) -> Outcome:
@@ -210,9 +197,10 @@ def gases(normal: float, elongation: float, particles: int, collisions: float) -
     data = rs.gas.cool(body, law, translational_temperature=body.mass * THETA, **course)
     turning, translational = (data[f"{of}_temperature"] / body.mass for of in ("rotational", "translational"))
     columns = data["time"], data["collisions"], translational, turning, data["a20"]
-    learned = scaled(body, law, 6 * particles)
+    pair = met(body, law, 6 * particles)
+    learned = scaled(body, law, pair, 6 * particles)
     if normal == NORMALS[0] and elongation in SHOWN:
-        learned = dropped(body, law, max(particles, 1000)) | learned  # a table of p(ε | v) needs these
+        learned = dropped(body, law, pair, max(particles, 1000)) | learned  # p(ε | v) needs a thousand
     cooled = {name: cool(rule, THETA, collisions, 1, particles) for name, rule in learned.items()}
     return {"exact": Gas(*(column.to_numpy() for column in columns))} | cooled
 

@@ -100,6 +100,7 @@ class PairKernel:
         bins = whole("data.attrs['bins']", data.attrs.get("bins"), 1, 10**6)
         self.data = data
         self._ratios = ratios
+        # A place and a speed make one key: the largest speed recorded is a half, and no speed counts as 1.
         speed_key, across_key = 0.5 / (np.max(speeds) or 1.0), 0.5 / (np.max(across) or 1.0)
         self._keys = speed_key, across_key
         # Encounters by ratio and speed, and then by bin and speed across: each in one increasing array.
