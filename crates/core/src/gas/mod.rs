@@ -17,7 +17,6 @@ pub use moments::{GAS_KIND, GAS_WHOLE};
 use crate::contact::Between;
 use crate::law::Law;
 use crate::math::{Quaternion, Vector};
-use crate::motion::Rotation;
 use crate::pair::{Draws, Ending, Following, PairState, Partner, approach, failed, normals};
 use crate::random::{of_gas, of_impact};
 use crate::simd::Level;
@@ -502,11 +501,10 @@ impl WithSimd for TurningParticle<'_> {
             body,
             time,
         } = self;
-        let attitude = particle.attitude * body.axes;
-        let spin = attitude.inverse().rotate(particle.spin);
-        let (attitude, spin) = Rotation::new(body.top, attitude, spin).at(time);
-        particle.attitude = attitude * body.axes.inverse();
-        particle.spin = attitude.rotate(spin);
+        let principal = particle.attitude * body.axes;
+        let (principal, spin) = body.top.turned(principal, particle.spin, time);
+        particle.attitude = principal * body.axes.inverse();
+        particle.spin = spin;
     }
 }
 

@@ -136,6 +136,7 @@ impl Rotation {
 
 impl Top {
     /// The attitude of the principal axes, and ω in the axes of space, of a free body after a time; both are given at its beginning.
+    #[inline(always)]
     pub fn turned(&self, attitude: Quaternion, spin: Vector, time: f64) -> (Quaternion, Vector) {
         let spin = attitude.inverse().rotate(spin);
         let (attitude, spin) = Rotation::new(*self, attitude, spin).at(time);
