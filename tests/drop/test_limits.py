@@ -245,10 +245,10 @@ except rs.SimulationInterrupted as stop:
     ],
 )
 def test_ctrl_c_in_fine_statistics(bins: tuple[int, int]) -> None:
-    """Grids of 10⁸ sites or so, with impacts in parts of each row or in most sites, cost about a second.
+    """Grids of 10⁸ sites or so, with impacts in parts of each row or in most sites, add the cost of their pages.
 
-    That is about as long as the pages of such a grid take when they are written to for the first time, which
-    is measured at once: it depends on the machine and on what else it does. Summing the counts took longer.
+    That is what writing to the pages of such a grid for the first time takes, which is measured at once: it depends
+    on the machine, and on the size of its pages. The rest is as long as in `test_ctrl_c_within_a_second`.
     """
     [[seconds, touched, kept]] = run(f"""
 body = rs.Dumbbell(radius=3e-3, separation=3e-3)
@@ -270,5 +270,5 @@ pages = np.frombuffer(mmap.mmap(-1, {8 * bins[0] * bins[1]}), np.uint8)
 pages[::mmap.PAGESIZE] = 1
 print(json.dumps([seconds, time.process_time() - began, kept]))
 """)
-    assert seconds < 2.0 * touched
+    assert seconds < 2.0 + touched
     assert kept > 0
