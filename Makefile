@@ -72,7 +72,7 @@ quick: $(STAMP)  ## format, lints, types and a sample of the tests: three minute
 minimum:  ## the tests with the lowest versions that pyproject.toml allows, in an environment of its own, by uv
 	$(PYTHON) -m venv build/minimum
 	build/minimum/bin/python -m pip install --quiet --disable-pip-version-check uv
-	build/minimum/bin/uv pip install --python build/minimum/bin/python --resolution lowest-direct '.[test]' google-crc32c  # or numcodecs warns in every process
+	build/minimum/bin/uv pip install --python build/minimum/bin/python --resolution lowest-direct '.[test]' 'google-crc32c>=1.5'  # or numcodecs warns in every process
 	build/minimum/bin/python -m pytest -n $(JOBS) --dist loadfile -W ignore::DeprecationWarning -W 'ignore:numpy.ndarray size changed'
 
 sdist: $(STAMP)  ## the source distribution; build it outside of a git tree, and run quick tests from it
