@@ -23,6 +23,7 @@ pub fn pair(seed: u64, index: u64) -> (f64, f64) {
 
 /// A uniform number in (0, 1) for an impact of a particle, counted from 0: counter = (particle, impact, 2), whose last word is 0 or 1 for
 /// the others.
+#[inline(always)]
 pub fn of_impact(seed: u64, particle: u64, impact: u64) -> f64 {
     let (low, high) = halves(particle);
     let key = halves(seed);
@@ -39,6 +40,7 @@ pub fn of_asperity(seed: u64, asperity: u64, draw: u32) -> (f64, f64) {
 }
 
 /// Two uniform numbers in [0, 1) for a draw of an encounter of two bodies: counter = (encounter, draw, 4).
+#[inline(always)]
 pub fn of_encounter(seed: u64, encounter: u64, draw: u32) -> (f64, f64) {
     let (low, high) = halves(encounter);
     let key = halves(seed);
@@ -47,6 +49,7 @@ pub fn of_encounter(seed: u64, encounter: u64, draw: u32) -> (f64, f64) {
 }
 
 /// Two uniform numbers in [0, 1) for a draw of a gas: counter = (draw, 0, 5).
+#[inline(always)]
 pub fn of_gas(seed: u64, draw: u64) -> (f64, f64) {
     let (low, high) = halves(draw);
     let key = halves(seed);
@@ -54,11 +57,13 @@ pub fn of_gas(seed: u64, draw: u64) -> (f64, f64) {
     (unit(a, b), unit(c, d))
 }
 
+#[inline(always)]
 fn unit(low: u32, high: u32) -> f64 {
     let bits = u64::from(low) | u64::from(high) << 32;
     (bits >> 11) as f64 * 2.0_f64.powi(-53)
 }
 
+#[inline(always)]
 fn halves(x: u64) -> (u32, u32) {
     (x as u32, (x >> 32) as u32)
 }

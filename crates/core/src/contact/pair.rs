@@ -36,8 +36,6 @@ pub(crate) struct PairFlight {
     pub apart: Vector,
     pub velocity: Vector,
     pub turns: [Turn; 2],
-    /// Bounds of the velocity and the acceleration of a point of each, per distance from its centre of mass.
-    pub bounds: [[f64; 2]; 2],
 }
 
 /// The parts of two bodies, and a length to which what rounding leaves is small.
@@ -148,7 +146,7 @@ impl<'a> PairSearch<'a> {
         };
         let apart = flight.velocity.mul_add(time, flight.apart);
         let [a, va] = poses[0].moves(place);
-        let bound = flight.bounds[0][1] * first.reach;
+        let bound = flight.turns[0].bounds[1] * first.reach;
         match second.kind {
             PieceKind::Ball(other, size) => {
                 let [b, vb] = poses[1].moves(other);
@@ -162,7 +160,7 @@ impl<'a> PairSearch<'a> {
                     normal,
                     distance,
                     spread: (change.dot(change) - rate * rate).max(0.0),
-                    bound: bound + flight.bounds[1][1] * second.reach,
+                    bound: bound + flight.turns[1].bounds[1] * second.reach,
                 })
             }
             PieceKind::Plane => Some(BallGap {
@@ -257,7 +255,7 @@ impl<'a> PairSearch<'a> {
         between: &mut [Between],
         steps: &mut u64,
     ) -> Result<Option<PairTouch>, ()> {
-        let [_, columns] = self.pieces.map(<[Piece]>::len);
+        let columns = self.pieces[1].len();
         let invisible = INVISIBLE * self.size;
         for each in &mut *between {
             each.clear = 0.0;
@@ -346,7 +344,7 @@ impl<'a> PairSearch<'a> {
         };
         let longer = if speed > 0.0 { 2.0_f64.sqrt() } else { 1.0 };
         let swings = |i: usize| {
-            let [velocity, acceleration] = flight.bounds[i];
+            let [velocity, acceleration] = flight.turns[i].bounds;
             (speed * velocity + 0.5 * longer * acceleration) * reach[i]
         };
         let curved = swings(0) + swings(1) + (-turning.dot(flight.velocity)).max(0.0);
@@ -408,7 +406,8 @@ impl<'a> PairSearch<'a> {
         };
         // The gap is above F by at most V²s²/2d, d the distance of what touches, which for corners is the gap itself.
         let bends = if width > NARROW * self.size {
-            let turned: f64 = (0..2).map(|i| flight.bounds[i][0] * reach[i]).sum();
+            let turned =
+                flight.turns[0].bounds[0] * reach[0] + flight.turns[1].bounds[0] * reach[1];
             let most = flight.velocity.norm() + turned;
             most * most / width
         } else {

@@ -17,7 +17,9 @@ pub use moments::{GAS_KIND, GAS_WHOLE};
 use crate::contact::Between;
 use crate::law::Law;
 use crate::math::{Quaternion, Vector};
-use crate::pair::{Draws, Ending, Following, PairState, Partner, approach, failed, normals};
+use crate::pair::{
+    Draws, Ending, Following, FreeBody, PairState, Partner, approach, failed, normals,
+};
 use crate::random::{of_gas, of_impact};
 use crate::simd::Level;
 use crate::threads::{Monitor, Resources};
@@ -95,14 +97,12 @@ pub struct Gas<'a> {
     pub seed: u64,
 }
 
+/// The rotation of a particle: attitude of the principal axes and ω in them, and the time up to which it has turned.
 #[derive(Debug, Clone, Copy)]
-struct Particle {
-    velocity: Vector,
+struct Turning {
     attitude: Quaternion,
     spin: Vector,
-    /// The time up to which it has turned, and that up to which it has been heated.
     time: f64,
-    heated: f64,
 }
 
 impl Gas<'_> {
@@ -132,13 +132,17 @@ impl Gas<'_> {
                     return Ok(());
                 }
                 let mut gas = Batch::new(self, batch)?;
-                let found = gas.run(law, monitor)?;
+                let found = Level::run_scalar(FollowedGas {
+                    gas: &mut gas,
+                    law,
+                    monitor,
+                })?;
                 let mut results = results.lock().expect("nobody panics who holds it");
                 let (rows, states) = &mut *results;
                 rows[batch * size..][..found.len()].copy_from_slice(&found);
                 let kept = states.iter_mut().skip(batch * each);
-                for (state, particle) in kept.zip(&gas.particles) {
-                    *state = particle.state();
+                for (i, state) in kept.take(each).enumerate() {
+                    *state = joined(gas.free(i, Vector::default()).state(gas.kind(i).body));
                 }
             }
         };
@@ -202,7 +206,11 @@ impl Gas<'_> {
 struct Batch<'a> {
     gas: &'a Gas<'a>,
     number: usize,
-    particles: Vec<Particle>,
+    /// By themselves: most candidates are refused, for which nothing else is asked.
+    velocities: Vec<Vector>,
+    turnings: Vec<Turning>,
+    /// The time up to which each has been heated, if they are.
+    heated: Vec<f64>,
     /// The number behind the last particle of each kind.
     ends: Vec<usize>,
     clock: f64,
@@ -216,16 +224,22 @@ impl<'a> Batch<'a> {
     /// Attitudes uniform on SO(3), velocities and ω of Maxwellians, of which the mean is taken off and whose energies are those of the temperatures.
     fn new(gas: &'a Gas<'a>, number: usize) -> Result<Self, Error> {
         let count = gas.each();
-        let mut particles = memory::empty("particles of a gas", count)?;
+        let mut velocities = memory::empty("velocities of a gas", count)?;
+        let mut turnings = memory::empty("rotations of a gas", count)?;
+        let heated = if gas.heating > 0.0 { count } else { 0 };
         let mut ends = Vec::new();
         for (order, kind) in gas.kinds.iter().enumerate() {
             let body = kind.body;
-            let start = particles.len();
+            let start = velocities.len();
             let each = kind.particles / gas.batches;
             if let Some(given) = gas.given {
                 let own = &given[number * count + start..][..each];
-                particles.extend(own.iter().map(Particle::with));
-                ends.push(particles.len());
+                for state in own {
+                    let free = FreeBody::new(body, &parted(state));
+                    velocities.push(free.velocity);
+                    turnings.push(Turning::new(&free, 0.0));
+                }
+                ends.push(velocities.len());
                 continue;
             }
             for i in 0..each {
@@ -234,23 +248,24 @@ impl<'a> Batch<'a> {
                 let attitude = draws.attitude();
                 let [x, y, z] = draws.normals();
                 let thermal = (kind.translational * body.inverse_mass).sqrt();
-                particles.push(Particle {
-                    velocity: Vector::new(x, y, z) * thermal,
-                    attitude,
-                    spin: draws.spin(body, attitude, kind.rotational),
+                velocities.push(Vector::new(x, y, z) * thermal);
+                turnings.push(Turning {
+                    attitude: attitude * body.axes,
+                    spin: draws.spin(body, kind.rotational),
                     time: 0.0,
-                    heated: 0.0,
                 });
             }
-            settle(&mut particles[start..], kind);
-            ends.push(particles.len());
+            settle(&mut velocities[start..], &mut turnings[start..], kind);
+            ends.push(velocities.len());
         }
         let largest = gas.kinds.iter().map(|kind| kind.body.pieces.len()).max();
         let parts = largest.unwrap_or(0);
         Ok(Self {
             gas,
             number,
-            particles,
+            velocities,
+            turnings,
+            heated: memory::zeros("times of heating", heated)?,
             ends,
             clock: 0.0,
             whole: Whole::default(),
@@ -259,6 +274,7 @@ impl<'a> Batch<'a> {
         })
     }
 
+    #[inline(always)]
     fn kind(&self, particle: usize) -> &'a Species<'a> {
         let gas = self.gas;
         if let [only] = &gas.kinds[..] {
@@ -267,14 +283,16 @@ impl<'a> Batch<'a> {
         &gas.kinds[self.ends.partition_point(|&end| end <= particle)]
     }
 
+    #[inline(always)]
     fn draw(&mut self) -> (f64, f64) {
         self.drawn += 1;
         of_gas(self.gas.seed, (self.number as u64) << 48 | self.drawn)
     }
 
+    #[inline(always)]
     fn run(&mut self, law: &Law<'_>, monitor: &Monitor) -> Result<Vec<f64>, Error> {
         let gas = self.gas;
-        let count = self.particles.len();
+        let count = self.velocities.len();
         let each = 0.5 * count as f64 * gas.collisions / gas.samples as f64;
         let reach = gas
             .kinds
@@ -293,8 +311,9 @@ impl<'a> Batch<'a> {
         while looks <= gas.samples {
             if since == count || self.clock > until {
                 self.heat_all();
-                let square = |p: &Particle| p.velocity.dot(p.velocity);
-                let most = self.particles.iter().map(square).fold(0.0, f64::max).sqrt();
+                let square = |v: &Vector| v.dot(*v);
+                let squares = self.velocities.iter().map(square);
+                let most = squares.fold(0.0, f64::max).sqrt();
                 (fastest, until) = (2.0 * ROOM * most, f64::INFINITY);
                 if gas.heating > 0.0 {
                     fastest += 2.0 * NOISE * most;
@@ -315,7 +334,7 @@ impl<'a> Batch<'a> {
             let j = if j < i { j } else { j + 1 };
             self.heat(i);
             self.heat(j);
-            let u = self.particles[i].velocity - self.particles[j].velocity;
+            let u = self.velocities[i] - self.velocities[j];
             let speed = u.norm();
             let bodies = [self.kind(i).body, self.kind(j).body];
             let both = bodies[0].reach + bodies[1].reach;
@@ -338,6 +357,7 @@ impl<'a> Batch<'a> {
         Ok(rows)
     }
 
+    #[inline(always)]
     fn meet(
         &mut self,
         law: &Law<'_>,
@@ -348,11 +368,16 @@ impl<'a> Batch<'a> {
     ) -> Result<(), Error> {
         let gas = self.gas;
         let (square, around) = self.draw();
-        for (i, body) in pair.into_iter().zip(bodies) {
+        let apart = approach(direction, direction.across(), square.sqrt(), around) * reach;
+        let mut states = [
+            self.free(pair[0], apart),
+            self.free(pair[1], Vector::default()),
+        ];
+        for ((i, body), state) in pair.into_iter().zip(bodies).zip(&mut states) {
             let passed = match gas.phase {
-                Phase::Time => self.clock - self.particles[i].time,
+                Phase::Time => self.clock - self.turnings[i].time,
                 Phase::Uniform => {
-                    let spin = self.particles[i].spin.norm();
+                    let spin = state.spin.norm();
                     if spin > 0.0 {
                         self.draw().0 * TURNS * TAU / spin
                     } else {
@@ -360,40 +385,23 @@ impl<'a> Batch<'a> {
                     }
                 }
             };
-            turn(&mut self.particles[i], body, passed);
-            self.particles[i].time = self.clock;
+            state.turn(body, passed);
+            self.turnings[i] = Turning::new(state, self.clock);
         }
-        let apart = approach(direction, direction.across(), square.sqrt(), around) * reach;
-        let states: [PairState; 2] = std::array::from_fn(|side| {
-            let p = &self.particles[pair[side]];
-            PairState {
-                position: if side == 0 { apart } else { Vector::default() },
-                velocity: p.velocity,
-                attitude: p.attitude,
-                spin: p.spin,
-            }
-        });
-        let energy = |states: &[PairState; 2]| -> f64 {
-            let of = |i: usize| {
-                let (v, body) = (states[i].velocity, bodies[i]);
-                0.5 * v.dot(v) * body.mass()
-                    + body.rotational_energy(states[i].attitude, states[i].spin)
-            };
-            of(0) + of(1)
-        };
         // The number of the encounter, for materials whose coefficient scatters.
         let number = (self.number as u64) << 48 | self.drawn;
         let seed = gas.seed;
         let between = &mut self.between[..bodies[0].pieces.len() * bodies[1].pieces.len()];
         between.fill(Between::default());
-        let outcome = Level::run_scalar(Following {
+        let outcome = Following {
             bodies,
             law,
             states,
             chance: &|contact| of_impact(seed, number, contact),
             hit: &mut |_: &_| {},
             between,
-        });
+        }
+        .follow();
         let outcome = outcome.map_err(|trouble| failed(law, trouble, (seed, number), 0))?;
         self.whole.attempts += 1.0;
         self.whole.steps += outcome.steps as f64;
@@ -405,60 +413,79 @@ impl<'a> Batch<'a> {
         if outcome.ending == Ending::Collapse {
             self.whole.collapses += 1.0;
         }
-        let [before, after] = [energy(&states), energy(&outcome.states)];
+        let energy = |states: &[FreeBody; 2]| {
+            let [one, two] = states;
+            one.energy(bodies[0]) + two.energy(bodies[1])
+        };
+        let (before, after) = (energy(&states), energy(&outcome.states));
         if after > before * (1.0 + CREATED) {
             self.whole.creating += 1.0;
             self.whole.created += after - before;
         }
         for (i, state) in pair.into_iter().zip(&outcome.states) {
-            let p = &mut self.particles[i];
-            (p.velocity, p.attitude, p.spin) = (state.velocity, state.attitude, state.spin);
+            self.velocities[i] = state.velocity;
+            self.turnings[i] = Turning::new(state, self.clock);
         }
         Ok(())
     }
 
+    #[inline(always)]
+    fn free(&self, particle: usize, position: Vector) -> FreeBody {
+        let Turning { attitude, spin, .. } = self.turnings[particle];
+        FreeBody {
+            position,
+            velocity: self.velocities[particle],
+            attitude,
+            spin,
+        }
+    }
+
     /// Adds what the noise has given to the velocity of a particle since it was last asked for.
+    #[inline(always)]
     fn heat(&mut self, particle: usize) {
         if self.gas.heating == 0.0 {
             return;
         }
         let [x, y, z] = normals([self.draw(), self.draw()]);
         let noise = self.gas.noise(self.kind(particle).body.inverse_mass);
-        let p = &mut self.particles[particle];
-        let deviation = (noise * (self.clock - p.heated)).sqrt();
-        p.velocity = p.velocity + Vector::new(x, y, z) * deviation;
-        p.heated = self.clock;
+        let (v, heated) = (&mut self.velocities[particle], &mut self.heated[particle]);
+        let deviation = (noise * (self.clock - *heated)).sqrt();
+        *v = *v + Vector::new(x, y, z) * deviation;
+        *heated = self.clock;
     }
 
     /// Heats all particles up to now, and takes off the velocity that this gave to their centre of mass.
+    #[inline(always)]
     fn heat_all(&mut self) {
         if self.gas.heating == 0.0 {
             return;
         }
         let (mut momentum, mut mass) = (Vector::default(), 0.0);
-        for i in 0..self.particles.len() {
+        for i in 0..self.velocities.len() {
             self.heat(i);
             let own = self.kind(i).body.mass();
-            momentum = momentum + self.particles[i].velocity * own;
+            momentum = momentum + self.velocities[i] * own;
             mass += own;
         }
         let mean = momentum / mass;
-        for p in &mut self.particles {
-            p.velocity = p.velocity - mean;
+        for v in &mut self.velocities {
+            *v = *v - mean;
         }
     }
 
     /// Adds a row: what has happened, and the moments of each kind now.
+    #[inline(always)]
     fn look(&mut self, rows: &mut Vec<f64>) {
         self.heat_all();
         rows.extend(self.whole.row(self.clock));
         let mut start = 0;
         for (kind, &end) in self.gas.kinds.iter().zip(&self.ends) {
             let mut sums = SpeciesSums::default();
-            for p in &mut self.particles[start..end] {
-                turn(p, kind.body, self.clock - p.time);
-                p.time = self.clock;
-                sums.add(kind, p.velocity, p.attitude, p.spin);
+            for i in start..end {
+                let mut state = self.free(i, Vector::default());
+                state.turn(kind.body, self.clock - self.turnings[i].time);
+                self.turnings[i] = Turning::new(&state, self.clock);
+                sums.add(kind, &state);
             }
             rows.extend(sums.row((end - start) as f64));
             start = end;
@@ -466,71 +493,64 @@ impl<'a> Batch<'a> {
     }
 }
 
-impl Particle {
-    fn with(&[vx, vy, vz, a, b, c, w, x, y, z]: &[f64; STATE]) -> Self {
+impl Turning {
+    #[inline(always)]
+    fn new(state: &FreeBody, time: f64) -> Self {
         Self {
-            velocity: Vector::new(vx, vy, vz),
-            attitude: Quaternion::new(w, x, y, z),
-            spin: Vector::new(a, b, c),
-            time: 0.0,
-            heated: 0.0,
+            attitude: state.attitude,
+            spin: state.spin,
+            time,
         }
     }
+}
 
-    fn state(&self) -> [f64; STATE] {
-        let ([vx, vy, vz], q, [a, b, c]) =
-            (self.velocity.parts(), self.attitude, self.spin.parts());
-        [vx, vy, vz, a, b, c, q.w, q.x, q.y, q.z]
+/// The state of a particle from its numbers.
+fn parted(&[vx, vy, vz, a, b, c, w, x, y, z]: &[f64; STATE]) -> PairState {
+    PairState {
+        position: Vector::default(),
+        velocity: Vector::new(vx, vy, vz),
+        attitude: Quaternion::new(w, x, y, z),
+        spin: Vector::new(a, b, c),
     }
 }
 
-/// A body that turns for a time.
-struct TurningParticle<'a> {
-    particle: &'a mut Particle,
-    body: &'a Partner,
-    time: f64,
+/// The numbers of the state of a particle.
+fn joined(state: PairState) -> [f64; STATE] {
+    let ([vx, vy, vz], [a, b, c]) = (state.velocity.parts(), state.spin.parts());
+    let q = state.attitude;
+    [vx, vy, vz, a, b, c, q.w, q.x, q.y, q.z]
 }
 
-impl WithSimd for TurningParticle<'_> {
-    type Output = ();
+/// A gas that is followed; one encounter has no packs.
+struct FollowedGas<'a, 'b, 'c> {
+    gas: &'a mut Batch<'b>,
+    law: &'a Law<'c>,
+    monitor: &'a Monitor,
+}
+
+impl WithSimd for FollowedGas<'_, '_, '_> {
+    type Output = Result<Vec<f64>, Error>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self {
-            particle,
-            body,
-            time,
-        } = self;
-        let principal = particle.attitude * body.axes;
-        let (principal, spin) = body.top.turned(principal, particle.spin, time);
-        particle.attitude = principal * body.axes.inverse();
-        particle.spin = spin;
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        self.gas.run(self.law, self.monitor)
     }
-}
-
-fn turn(particle: &mut Particle, body: &Partner, time: f64) {
-    Level::run_scalar(TurningParticle {
-        particle,
-        body,
-        time,
-    });
 }
 
 /// Takes the mean velocity off, and scales velocities and the parts of ω to the energies of the temperatures.
-fn settle(particles: &mut [Particle], kind: &Species<'_>) {
-    let count = particles.len() as f64;
+fn settle(velocities: &mut [Vector], turnings: &mut [Turning], kind: &Species<'_>) {
+    let count = velocities.len() as f64;
     let body = kind.body;
-    let mean = particles
-        .iter()
-        .fold(Vector::default(), |sum, p| sum + p.velocity)
-        / count;
+    let sum = velocities.iter().fold(Vector::default(), |sum, &v| sum + v);
+    let mean = sum / count;
     let mut square = 0.0;
+    for v in velocities.iter_mut() {
+        *v = *v - mean;
+        square += v.dot(*v);
+    }
     let mut turning = [0.0; 3];
-    for p in particles.iter_mut() {
-        p.velocity = p.velocity - mean;
-        square += p.velocity.dot(p.velocity);
-        let own = (p.attitude * body.axes).inverse().rotate(p.spin).parts();
-        for (sum, part) in turning.iter_mut().zip(own) {
+    for p in turnings.iter() {
+        for (sum, part) in turning.iter_mut().zip(p.spin.parts()) {
             *sum += part * part;
         }
     }
@@ -544,10 +564,11 @@ fn settle(particles: &mut [Particle], kind: &Species<'_>) {
             0.0
         }
     });
-    for p in particles {
-        p.velocity = p.velocity * scale;
-        let axes = p.attitude * body.axes;
-        let [x, y, z] = axes.inverse().rotate(p.spin).parts();
-        p.spin = axes.rotate(Vector::new(x * scales[0], y * scales[1], z * scales[2]));
+    for v in velocities {
+        *v = *v * scale;
+    }
+    for p in turnings {
+        let [x, y, z] = p.spin.parts();
+        p.spin = Vector::new(x * scales[0], y * scales[1], z * scales[2]);
     }
 }

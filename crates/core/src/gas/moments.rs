@@ -1,7 +1,8 @@
 //! The record of a gas: counts since the beginning, and moments of each kind of bodies.
 
 use super::Species;
-use crate::math::{Quaternion, Vector};
+use crate::math::Vector;
+use crate::pair::{FreeBody, PairState};
 
 /// Columns of a look at a gas: name, unit and text.
 pub const GAS_WHOLE: [(&str, &str, &str); 9] = [
@@ -92,20 +93,15 @@ pub struct SpeciesSums([f64; GAS_KIND.len()]);
 
 impl SpeciesSums {
     /// Adds a body.
-    pub fn add(
-        &mut self,
-        kind: &Species<'_>,
-        velocity: Vector,
-        attitude: Quaternion,
-        spin: Vector,
-    ) {
-        let body = kind.body;
-        let axes = attitude * body.axes;
-        let own = axes.inverse().rotate(spin).parts();
+    #[inline(always)]
+    pub fn add(&mut self, kind: &Species<'_>, state: &FreeBody) {
+        let (body, velocity) = (kind.body, state.velocity);
+        let own = state.spin.parts();
         let moments = body.moments();
-        let [x, y, z] = [0, 1, 2].map(|i| 0.5 * moments[i] * own[i] * own[i]);
-        let part = |(energy, turned)| if turned { energy } else { 0.0 };
-        let turning: f64 = [x, y, z].into_iter().zip(kind.turned).map(part).sum();
+        let energy = |i: usize| 0.5 * moments[i] * own[i] * own[i];
+        let [x, y, z] = [energy(0), energy(1), energy(2)];
+        let part = |i: usize, energy| if kind.turned[i] { energy } else { 0.0 };
+        let turning = part(0, x) + part(1, y) + part(2, z);
         let square = velocity.dot(velocity);
         let cosine = |other: Vector| {
             let size = square * other.dot(other);
@@ -116,6 +112,7 @@ impl SpeciesSums {
                 0.0
             }
         };
+        let PairState { attitude, spin, .. } = state.state(body);
         let axis = attitude.rotate(Vector::new(0.0, 0.0, 1.0));
         let row = [
             square,

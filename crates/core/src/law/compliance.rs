@@ -20,6 +20,7 @@ impl Compliance {
     ///
     /// # Errors
     /// [`Error::Parameter`] unless the matrix is finite and positive definite.
+    #[inline(always)]
     pub fn new(entries: Symmetric) -> Result<Self, Error> {
         let [first, second, third] = Factors::new(&entries).pivots;
         let size = entries.xx + entries.yy + entries.zz;
@@ -34,12 +35,13 @@ impl Compliance {
     }
 
     /// The compliance with these entries, of a body that has one.
+    #[inline(always)]
     pub(super) fn of_entries(entries: Symmetric) -> Self {
         Self(entries)
     }
 
     /// I/m + \[**r**\]ᵀJ⁻¹\[**r**\]: that of a body with mass m and the inverse tensor of inertia J⁻¹, hit at **r** from its centre of mass.
-    #[inline]
+    #[inline(always)]
     pub fn of_body(mass: f64, inverse_inertia: &Symmetric, arm: Vector) -> Self {
         // Column i of [r] is r × e_i.
         let x = Vector::new(0.0, arm.z, -arm.y);
@@ -63,21 +65,25 @@ impl Compliance {
     }
 
     /// Its entries.
+    #[inline(always)]
     pub fn entries(&self) -> &Symmetric {
         &self.0
     }
 
     /// K_nn: the change of the normal velocity by a unit impulse along the normal.
+    #[inline(always)]
     pub fn normal(&self) -> f64 {
         self.0.zz
     }
 
     /// K**P**: the change of the contact velocity by an impulse.
+    #[inline(always)]
     pub fn change(&self, impulse: Vector) -> Vector {
         self.0 * impulse
     }
 
     /// K⁻¹Δ**v**_c: the impulse that changes the contact velocity by this much.
+    #[inline(always)]
     pub fn impulse(&self, change: Vector) -> Vector {
         Factors::new(&self.0).solve(change)
     }
@@ -85,10 +91,12 @@ impl Compliance {
 
 /// For one contact: **n**, **u** and **w** are its axes z, x and y.
 impl Compliant<Scalar> for Compliance {
+    #[inline(always)]
     fn nn(&self) -> Pack<Scalar, 1> {
         one(self.normal())
     }
 
+    #[inline(always)]
     fn pushed(
         &self,
         normal: Pack<Scalar, 1>,
@@ -101,6 +109,7 @@ impl Compliant<Scalar> for Compliance {
         ]
     }
 
+    #[inline(always)]
     fn impulse<const SPACE: bool>(
         &self,
         change: Components<Pack<Scalar, 1>>,
@@ -112,6 +121,7 @@ impl Compliant<Scalar> for Compliance {
 impl Add for Compliance {
     type Output = Self;
 
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self(self.0 + other.0)
     }
@@ -126,6 +136,7 @@ struct Factors {
 }
 
 impl Factors {
+    #[inline(always)]
     fn new(k: &Symmetric) -> Self {
         let yx = k.xy / k.xx;
         let zx = k.xz / k.xx;
@@ -140,6 +151,7 @@ impl Factors {
         }
     }
 
+    #[inline(always)]
     fn solve(&self, v: Vector) -> Vector {
         let y = v.y - self.yx * v.x;
         let z = v.z - self.zx * v.x - self.zy * y;

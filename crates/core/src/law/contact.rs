@@ -57,6 +57,7 @@ impl<T: Copy> Components<T> {
 
 impl Components<Pack<Scalar, 1>> {
     /// These components, x along **u**, y along **w** and z along **n**, in a single lane.
+    #[inline(always)]
     pub(super) fn in_lane(v: Vector) -> Self {
         Self {
             normal: one(v.z),
@@ -66,6 +67,7 @@ impl Components<Pack<Scalar, 1>> {
     }
 
     /// The vector with these components.
+    #[inline(always)]
     pub(super) fn in_axes(self) -> Vector {
         let Components {
             normal,
@@ -78,6 +80,7 @@ impl Components<Pack<Scalar, 1>> {
 
 impl Contact {
     /// The contact in a single lane.
+    #[inline(always)]
     pub(crate) fn in_lane(&self) -> Contact<Pack<Scalar, 1>> {
         Contact {
             velocity: self.velocity.map(one),

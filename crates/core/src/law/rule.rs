@@ -155,11 +155,13 @@ impl<'a> Law<'a> {
     ///
     /// # Errors
     /// [`Fault`] if a law of one's own gives no impulse that is possible.
+    #[inline(always)]
     pub fn answer(&self, compliance: &Compliance, velocity: Vector) -> Result<Answer, Fault> {
         self.answer_with(compliance, velocity, |normal| normal)
     }
 
     /// The same where ε_n scatters, with a uniform number in (0, 1).
+    #[inline(always)]
     pub(crate) fn answer_drawn(
         &self,
         compliance: &Compliance,
@@ -171,6 +173,7 @@ impl<'a> Law<'a> {
     }
 
     /// The impulse with a function of what ε_n is at the speed of the contact.
+    #[inline(always)]
     fn answer_with(
         &self,
         compliance: &Compliance,

@@ -10,6 +10,7 @@ mod vector;
 pub use quaternion::Quaternion;
 pub(crate) use quaternion::sum;
 pub use symmetric::Symmetric;
+pub(crate) use symmetric::UNITS;
 pub use vector::Vector;
 pub(crate) use vector::Vectors;
 

@@ -22,6 +22,7 @@ impl Quaternion {
     pub const IDENTITY: Self = Self::new(1.0, 0.0, 0.0, 0.0);
 
     /// The quaternion (w, x, y, z).
+    #[inline(always)]
     pub const fn new(w: f64, x: f64, y: f64, z: f64) -> Self {
         Self { w, x, y, z }
     }

@@ -23,6 +23,7 @@ pub struct Symmetric {
 impl Mul<Vector> for Symmetric {
     type Output = Vector;
 
+    #[inline(always)]
     fn mul(self, v: Vector) -> Vector {
         Vector::new(
             self.xx * v.x + self.xy * v.y + self.xz * v.z,
@@ -35,6 +36,7 @@ impl Mul<Vector> for Symmetric {
 impl Add for Symmetric {
     type Output = Self;
 
+    #[inline(always)]
     fn add(self, b: Self) -> Self {
         Self {
             xx: self.xx + b.xx,
@@ -49,6 +51,7 @@ impl Add for Symmetric {
 
 impl Symmetric {
     /// The matrix with these rows, of which the upper triangle is read.
+    #[inline(always)]
     pub const fn from_rows([[xx, xy, xz], [_, yy, yz], [_, _, zz]]: [[f64; 3]; 3]) -> Self {
         Self {
             xx,
@@ -70,6 +73,7 @@ impl Symmetric {
     }
 
     /// **v** ⊗ **v** times a factor.
+    #[inline(always)]
     pub fn square(v: Vector, factor: f64) -> Self {
         Self {
             xx: factor * v.x * v.x,
@@ -82,6 +86,7 @@ impl Symmetric {
     }
 
     /// The diagonal matrix with these entries.
+    #[inline(always)]
     pub const fn diagonal([xx, yy, zz]: [f64; 3]) -> Self {
         Self {
             xx,
@@ -96,8 +101,10 @@ impl Symmetric {
     /// The matrix in the axes of space of an operation that is diagonal, with these entries, in those of the body.
     #[inline(always)]
     pub fn turned([x, y, z]: [f64; 3], attitude: Quaternion) -> Self {
-        let along = |axis: usize, entry: f64| Self::square(attitude.rotate(UNITS[axis]), entry);
-        along(0, x) + along(1, y) + along(2, z)
+        let [one, two, three] = UNITS;
+        Self::square(attitude.rotate(one), x)
+            + Self::square(attitude.rotate(two), y)
+            + Self::square(attitude.rotate(three), z)
     }
 
     /// Eigenvalues, and the rotation from the eigenvectors' axes to those of the matrix: Jacobi's method, which finds even small
@@ -141,7 +148,8 @@ impl Symmetric {
 
 /// Rounds of Jacobi's method after which it has converged; it needs five or six.
 const SWEEPS: usize = 30;
-const UNITS: [Vector; 3] = [
+/// The unit vectors along the axes.
+pub(crate) const UNITS: [Vector; 3] = [
     Vector::new(1.0, 0.0, 0.0),
     Vector::new(0.0, 1.0, 0.0),
     Vector::new(0.0, 0.0, 1.0),

@@ -20,6 +20,7 @@ pub struct Vector {
 
 impl Vector {
     /// The vector (x, y, z).
+    #[inline(always)]
     pub const fn new(x: f64, y: f64, z: f64) -> Self {
         Self { x, y, z }
     }
@@ -82,6 +83,7 @@ impl Vector {
 
 impl Add for Vector {
     type Output = Self;
+    #[inline(always)]
     fn add(self, b: Self) -> Self {
         Self::new(self.x + b.x, self.y + b.y, self.z + b.z)
     }
@@ -89,6 +91,7 @@ impl Add for Vector {
 
 impl Sub for Vector {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, b: Self) -> Self {
         Self::new(self.x - b.x, self.y - b.y, self.z - b.z)
     }
@@ -96,6 +99,7 @@ impl Sub for Vector {
 
 impl Mul<f64> for Vector {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, factor: f64) -> Self {
         Self::new(self.x * factor, self.y * factor, self.z * factor)
     }
@@ -103,6 +107,7 @@ impl Mul<f64> for Vector {
 
 impl Div<f64> for Vector {
     type Output = Self;
+    #[inline(always)]
     fn div(self, divisor: f64) -> Self {
         Self::new(self.x / divisor, self.y / divisor, self.z / divisor)
     }

@@ -4,8 +4,9 @@
 ///
 /// With J₁ ≤ J₂ ≤ J₃, J₁J₃|ω|² − 2E(J₁ + J₃) + Λ² = Σω_i²(J_i − J₁)(J_i − J₃) = −ω₂²(J₂ − J₁)(J₃ − J₂) ≤ 0. The energy and Λ² are constant, so
 /// that |ω| is largest where ω₂ = 0: Ω² = |ω|² + ω₂²(J₂ − J₁)(J₃ − J₂)/(J₁J₃) with what it is now.
+#[inline(always)]
 pub(super) fn largest_spin(moments: [f64; 3], spin: [f64; 3]) -> f64 {
-    let [x, y, z] = spin.map(|w| w * w);
+    let [x, y, z] = [spin[0] * spin[0], spin[1] * spin[1], spin[2] * spin[2]];
     let [a, b, c] = moments;
     let (squares, [least, middle, most]) = if (a - b) * (b - c) >= 0.0 {
         (y, [a, b, c])
@@ -34,6 +35,7 @@ pub struct SpinBounds {
 
 impl SpinBounds {
     /// Of a body of this asymmetry, in a flight with this largest |ω|².
+    #[inline(always)]
     pub fn new(asymmetry: f64, largest_spin: f64) -> Self {
         let change = asymmetry / 3.0_f64.sqrt();
         let fastest = largest_spin.sqrt();

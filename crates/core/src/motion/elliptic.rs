@@ -127,7 +127,8 @@ fn two(one: f64, other: f64) -> Two {
 
 #[inline(always)]
 fn both(pair: Two) -> [f64; 2] {
-    [0, 1].map(|i| pair.as_slice()[i])
+    let both = pair.as_slice();
+    [both[0], both[1]]
 }
 
 impl Elliptic {
@@ -270,7 +271,7 @@ impl Elliptic {
             start: Quaternion::IDENTITY,
         };
         let v = [attitude.x, attitude.y, attitude.z];
-        let [x, y, z] = order.map(|axis| v[axis]);
+        let [x, y, z] = [v[order[0]], v[order[1]], v[order[2]]];
         let (sine, cosine) = sincos(phase);
         let (_, argument) = found.thetas(sine, cosine);
         let turned = found.frame([w1, w2, w3], argument, (0.0, 1.0), 0.0);
@@ -285,7 +286,8 @@ impl Elliptic {
             sincos_in_lanes(two(self.rate * time + self.phase, self.turn * time));
         let [[sine, turn_sine], [cosine, turn_cosine]] = [both(sines), both(cosines)];
         let (theta, argument) = self.thetas(sine, cosine);
-        let w = [0, 1, 2].map(|i| self.sizes[i] * theta[i]);
+        let [one, two, three] = self.sizes;
+        let w = [one * theta[0], two * theta[1], three * theta[2]];
         let (spin, more) = self.spin(w);
         let turned = self.frame(w, argument, (turn_sine, turn_cosine), more);
         let Quaternion { w, x, y, z } = self.start.turned(turned);
@@ -330,7 +332,7 @@ impl Elliptic {
     fn spin(&self, w: [f64; 3]) -> ([f64; 3], f64) {
         let [a, b] = self.across;
         let part = (self.beyond / (a * w[0] * w[0] + b * w[1] * w[1])).sqrt();
-        let [x, y, z] = w.map(|w| part * w);
+        let [x, y, z] = [part * w[0], part * w[1], part * w[2]];
         let per = 0.5 / (self.moments[2] * z * z);
         let more = per * energy_error(self.moments, self.first, [x, y, z]);
         ([x, y, z + more * z], more)
@@ -346,7 +348,8 @@ impl Elliptic {
         turn: (f64, f64),
         more: f64,
     ) -> Quaternion {
-        let [x, y, z] = [0, 1, 2].map(|i| self.moments[i] * w[i]);
+        let [a, b, c] = self.moments;
+        let [x, y, z] = [a * w[0], b * w[1], c * w[2]];
         let square = x * x + y * y;
         let [across, whole] = both(two(square, square + z * z).sqrt());
         let length = across * (real * real + imaginary * imaginary).sqrt();

@@ -50,7 +50,12 @@ impl Rotation {
                 let moments = top.moments();
                 let across = moments[(axis + 1) % 3];
                 let spin = spin.parts();
-                let [x, y, z] = [0, 1, 2].map(|i| moments[i] / across * spin[i]);
+                let [a, b, c] = moments;
+                let [x, y, z] = [
+                    a / across * spin[0],
+                    b / across * spin[1],
+                    c / across * spin[2],
+                ];
                 let own = (1.0 - moments[axis] / across) * spin[axis];
                 Way::Precession(half_and_direction(Vector::new(x, y, z)), own, axis)
             }
@@ -113,10 +118,7 @@ impl Rotation {
         let (x, dx) = sum(a, less * a + across * b);
         let (y, dy) = sum(b, less * b - across * a);
         // Squares, and what they lose by rounding.
-        let [(aa, da), (bb, db), (xx, ex), (yy, ey)] = [a, b, x, y].map(|v| {
-            let square = v * v;
-            (square, v.mul_add(v, -square))
-        });
+        let [(aa, da), (bb, db), (xx, ex), (yy, ey)] = [square(a), square(b), square(x), square(y)];
         let lost = ((aa - xx) + (bb - yy)) + ((da - ex) + (db - ey)) - 2.0 * (x * dx + y * dy);
         let part = 0.5 * lost / (xx + yy).max(f64::MIN_POSITIVE);
         (spin[i], spin[j]) = (x + (dx + part * x), y + (dy + part * y));
@@ -142,6 +144,13 @@ impl Top {
         let (attitude, spin) = Rotation::new(*self, attitude, spin).at(time);
         (attitude, attitude.rotate(spin))
     }
+}
+
+/// A square, and what it has lost by rounding.
+#[inline(always)]
+fn square(v: f64) -> (f64, f64) {
+    let square = v * v;
+    (square, v.mul_add(v, -square))
 }
 
 /// Half the length of a vector, and its direction; none of no vector.

@@ -6,6 +6,7 @@ use crate::shape::Top;
 
 impl Top {
     /// The angular momentum in the axes of space, from ω in those of the body.
+    #[inline(always)]
     pub fn momentum(&self, attitude: Quaternion, spin: Vector) -> Vector {
         let [a, b, c] = self.moments();
         attitude.rotate(Vector::new(a * spin.x, b * spin.y, c * spin.z))
@@ -45,11 +46,13 @@ impl Top {
     }
 
     /// The largest |ω|² of a flight.
+    #[inline(always)]
     pub fn largest_spin(&self, spin: Vector) -> f64 {
         largest_spin(self.moments(), spin.parts())
     }
 
     /// Bounds on the rotation in a flight.
+    #[inline(always)]
     pub fn bounds(&self, spin: Vector) -> SpinBounds {
         SpinBounds::new(self.asymmetry, self.largest_spin(spin))
     }
@@ -58,7 +61,6 @@ impl Top {
 /// Twice the energy by which a later ω is short of an earlier one, to rounding of the small difference.
 #[inline(always)]
 pub(super) fn energy_error(moments: [f64; 3], before: [f64; 3], later: [f64; 3]) -> f64 {
-    let [a, b, c] =
-        [0, 1, 2].map(|i| moments[i] * ((before[i] - later[i]) * (before[i] + later[i])));
-    a + b + c
+    let part = |i: usize| moments[i] * ((before[i] - later[i]) * (before[i] + later[i]));
+    part(0) + part(1) + part(2)
 }

@@ -4,16 +4,22 @@
 //! |**p**″| = |p||**ω** × **e**||Λ|/J. Any other point has |**p**″| ≤ (1 + a/√3)Ω²|**p**| ([`SpinBounds`](super::SpinBounds)).
 
 use super::Rotation;
-use crate::math::{Quaternion, Vector};
+use crate::math::{Quaternion, UNITS, Vector};
 use crate::shape::{Symmetry, Top};
 use crate::simd::elementary::sincos;
 
 /// The rotation of a body during a flight.
+pub(crate) struct Turn {
+    way: Way,
+    /// The largest velocity and acceleration of a point, per distance from the centre of mass.
+    pub bounds: [f64; 2],
+}
+
 #[expect(
     clippy::large_enum_variant,
     reason = "two live at a time, on the stack"
 )]
-pub(crate) enum Turn {
+enum Way {
     /// All points are on an axis of this number: the part of it along **Λ**, that across and **Λ** × **e**/|Λ|, the rate.
     Axis(usize, [Vector; 3], f64),
     Any(Rotation),
@@ -38,53 +44,62 @@ impl Top {
 
 impl Turn {
     /// The rotation from this attitude with this ω in the axes of the body, whose points are all on a principal axis that precesses, if that
-    /// is given; and the largest velocity and acceleration of a point, per distance from the centre of mass.
+    /// is given.
     #[inline(always)]
-    pub fn new(
-        top: &Top,
-        axis: Option<usize>,
-        attitude: Quaternion,
-        spin: Vector,
-    ) -> (Self, [f64; 2]) {
+    pub fn new(top: &Top, axis: Option<usize>, attitude: Quaternion, spin: Vector) -> Self {
         let Some(axis) = axis else {
             let bounds = top.bounds(spin);
-            let turn = Self::Any(Rotation::new(*top, attitude, spin));
-            return (turn, [bounds.fastest, bounds.whole]);
+            return Self {
+                way: Way::Any(Rotation::new(*top, attitude, spin)),
+                bounds: [bounds.fastest, bounds.whole],
+            };
         };
-        let e = attitude.rotate(unit(axis));
+        let e = attitude.rotate(UNITS[axis]);
         let across = top.moments()[(axis + 1) % 3];
         let momentum = top.momentum(attitude, spin) / across;
         let rate = momentum.norm();
         if rate == 0.0 {
             let none = Vector::default();
-            return (Self::Axis(axis, [e, none, none], 0.0), [0.0; 2]);
+            return Self {
+                way: Way::Axis(axis, [e, none, none], 0.0),
+                bounds: [0.0; 2],
+            };
         }
         let about = momentum / rate;
         let third = about.cross(e);
         let second = third.cross(about);
         let along = about * about.dot(e);
         let speed = rate * third.norm();
-        (
-            Self::Axis(axis, [along, second, third], rate),
-            [speed, rate * speed],
-        )
+        Self {
+            way: Way::Axis(axis, [along, second, third], rate),
+            bounds: [speed, rate * speed],
+        }
     }
 
     /// The body at a time ≥ 0.
     #[inline(always)]
     pub fn at(&mut self, time: f64) -> BodyPose {
-        match self {
-            Self::Axis(axis, [along, second, third], rate) => {
+        match &mut self.way {
+            Way::Axis(axis, [along, second, third], rate) => {
                 let (sine, cosine) = sincos(*rate * time);
                 let level = third.mul_add(sine, *second * cosine);
                 let change = third.mul_add(cosine, *second * -sine) * *rate;
                 let bend = level * -(*rate * *rate);
                 BodyPose::Axis(*axis, [*along + level, change, bend])
             }
-            Self::Any(rotation) => {
+            Way::Any(rotation) => {
                 let (attitude, spin) = rotation.at(time);
                 BodyPose::Any(attitude, spin)
             }
+        }
+    }
+
+    /// Attitude, and ω in the axes of the body, at a time ≥ 0; none of a body of which only the axis is followed.
+    #[inline(always)]
+    pub fn rotated(&mut self, time: f64) -> Option<(Quaternion, Vector)> {
+        match &mut self.way {
+            Way::Axis(..) => None,
+            Way::Any(rotation) => Some(rotation.at(time)),
         }
     }
 }
@@ -98,19 +113,21 @@ impl BodyPose {
                 let along = point.parts()[*axis];
                 [*e * along, *change * along]
             }
-            Self::Any(attitude, spin) => [point, spin.cross(point)].map(|v| attitude.rotate(v)),
+            Self::Any(attitude, spin) => {
+                [attitude.rotate(point), attitude.rotate(spin.cross(point))]
+            }
         }
     }
 
     /// A rotation that takes this principal axis to a unit vector.
     pub fn about(axis: usize, e: Vector) -> Quaternion {
-        let from = unit(axis);
+        let from = UNITS[axis];
         let (along, across) = (from.dot(e), from.cross(e));
         if along > -0.5 {
             return Quaternion::new(1.0 + along, across.x, across.y, across.z).normalized();
         }
         // Half a turn about the next axis first.
-        let Vector { x, y, z } = unit((axis + 1) % 3);
+        let Vector { x, y, z } = UNITS[(axis + 1) % 3];
         let (along, across) = (-along, across * -1.0);
         Quaternion::new(1.0 + along, across.x, across.y, across.z).normalized()
             * Quaternion::new(0.0, x, y, z)
@@ -126,10 +143,4 @@ impl BodyPose {
             }
         }
     }
-}
-
-/// The principal axis of this number, in the axes of the body.
-fn unit(axis: usize) -> Vector {
-    let [x, y, z] = [0, 1, 2].map(|i| f64::from(i == axis));
-    Vector::new(x, y, z)
 }

@@ -65,9 +65,9 @@ pub struct Hit {
 
 /// The end of an encounter.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outcome {
+pub struct Outcome<T = PairState> {
     /// The bodies then.
-    pub states: [PairState; 2],
+    pub states: [T; 2],
     /// The time since the beginning.
     pub time: f64,
     /// Number of contacts.
@@ -100,14 +100,15 @@ pub fn encounter(
     mut hit: impl FnMut(&Hit),
 ) -> Result<Outcome, Trouble> {
     let mut between = vec![Between::default(); bodies[0].pieces.len() * bodies[1].pieces.len()];
-    Level::run_scalar(Following {
+    let outcome = Level::run_scalar(Following {
         bodies,
         law,
-        states,
+        states: FreeBody::both(bodies, &states),
         chance: &chance,
         hit: &mut hit,
         between: &mut between,
-    })
+    });
+    Ok(outcome?.given(bodies))
 }
 
 /// The width of the narrowest gap between two bodies, negative if they overlap.
@@ -116,16 +117,18 @@ pub fn narrowest(bodies: [&Partner; 2], states: &[PairState; 2]) -> f64 {
         pieces: bodies.map(|body| &body.pieces[..]),
         size: bodies[0].reach + bodies[1].reach,
     };
-    let turning = std::array::from_fn(|i| FreeBody::new(bodies[i], &states[i]));
-    let apart = states[0].position - states[1].position;
-    search.narrowest(&mut flight(bodies, apart, Vector::default(), &turning))
+    let mut states = FreeBody::both(bodies, states);
+    for state in &mut states {
+        state.velocity = Vector::default();
+    }
+    search.narrowest(&mut flight(bodies, &states))
 }
 
 /// An encounter; it has no packs.
 pub(crate) struct Following<'a, 'b> {
     pub bodies: [&'a Partner; 2],
     pub law: &'a Law<'b>,
-    pub states: [PairState; 2],
+    pub states: [FreeBody; 2],
     pub chance: &'a dyn Fn(u64) -> f64,
     pub hit: &'a mut dyn FnMut(&Hit),
     /// Room for what is known of each two parts.
@@ -133,7 +136,7 @@ pub(crate) struct Following<'a, 'b> {
 }
 
 impl WithSimd for Following<'_, '_> {
-    type Output = Result<Outcome, Trouble>;
+    type Output = Result<Outcome<FreeBody>, Trouble>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
@@ -141,29 +144,57 @@ impl WithSimd for Following<'_, '_> {
     }
 }
 
-/// A body in flight: attitude of the principal axes, and ω in them.
+/// A body in flight.
 #[derive(Clone, Copy)]
-struct FreeBody {
-    attitude: Quaternion,
-    spin: Vector,
+pub(crate) struct FreeBody {
+    pub position: Vector,
+    pub velocity: Vector,
+    /// That of the principal axes.
+    pub attitude: Quaternion,
+    /// ω in the principal axes.
+    pub spin: Vector,
 }
 
 impl FreeBody {
     #[inline(always)]
-    fn new(body: &Partner, state: &PairState) -> Self {
+    pub fn new(body: &Partner, state: &PairState) -> Self {
         let attitude = state.attitude * body.axes;
-        let spin = attitude.inverse().rotate(state.spin);
-        Self { attitude, spin }
+        Self {
+            position: state.position,
+            velocity: state.velocity,
+            attitude,
+            spin: attitude.inverse().rotate(state.spin),
+        }
     }
 
     #[inline(always)]
-    fn state(&self, body: &Partner, position: Vector, velocity: Vector) -> PairState {
+    pub fn both(bodies: [&Partner; 2], states: &[PairState; 2]) -> [Self; 2] {
+        [
+            Self::new(bodies[0], &states[0]),
+            Self::new(bodies[1], &states[1]),
+        ]
+    }
+
+    #[inline(always)]
+    pub fn state(&self, body: &Partner) -> PairState {
         PairState {
-            position,
-            velocity,
+            position: self.position,
+            velocity: self.velocity,
             attitude: self.attitude * body.axes.inverse(),
             spin: self.attitude.rotate(self.spin),
         }
+    }
+
+    /// Its kinetic energy.
+    #[inline(always)]
+    pub fn energy(&self, body: &Partner) -> f64 {
+        body.translational_energy(self.velocity) + 0.5 * body.top.twice_energy(self.spin)
+    }
+
+    /// Turns it as it does in a time.
+    #[inline(always)]
+    pub fn turn(&mut self, body: &Partner, time: f64) {
+        (self.attitude, self.spin) = Rotation::new(body.top, self.attitude, self.spin).at(time);
     }
 
     #[inline(always)]
@@ -184,57 +215,90 @@ impl FreeBody {
         Compliance::of_body(1.0 / body.inverse_mass, &inverse, back.rotate(arm))
     }
 
+    /// The change by an impulse at a point.
     #[inline(always)]
-    fn turn(&self, body: &Partner) -> (Turn, [f64; 2]) {
-        Turn::new(&body.top, body.axis, self.attitude, self.spin)
+    fn push(&mut self, body: &Partner, arm: Vector, impulse: Vector, sign: f64) {
+        self.velocity = impulse.mul_add(sign * body.inverse_mass, self.velocity);
+        let torque = self.attitude.inverse().rotate(arm.cross(impulse));
+        let [x, y, z] = body.inverse_moments;
+        let change = Vector::new(x * torque.x, y * torque.y, z * torque.z); // (11)
+        self.spin = change.mul_add(sign, self.spin);
+    }
+}
+
+impl Outcome<FreeBody> {
+    /// With the attitudes of the axes that the bodies were given in.
+    #[inline(always)]
+    pub fn given(self, bodies: [&Partner; 2]) -> Outcome {
+        let [one, two] = &self.states;
+        Outcome {
+            states: [one.state(bodies[0]), two.state(bodies[1])],
+            time: self.time,
+            contacts: self.contacts,
+            ending: self.ending,
+            steps: self.steps,
+        }
     }
 }
 
 impl Following<'_, '_> {
     #[inline(always)]
-    fn follow(mut self) -> Result<Outcome, Trouble> {
+    pub fn follow(mut self) -> Result<Outcome<FreeBody>, Trouble> {
         let bodies = self.bodies;
         let reach = bodies[0].reach + bodies[1].reach;
         let search = PairSearch {
-            pieces: bodies.map(|body| &body.pieces[..]),
+            pieces: [&bodies[0].pieces, &bodies[1].pieces],
             size: reach,
         };
-        let [one, two] = &self.states;
-        let mut turning = [FreeBody::new(bodies[0], one), FreeBody::new(bodies[1], two)];
-        let mut velocities = [one.velocity, two.velocity];
-        let mut places = [one.position, two.position];
-        let (mut departure, mut unresolved) = (None, 0);
-        let (mut clock, mut contacts, mut steps) = (0.0, 0, 0);
+        let balls = bodies[0].is_ball() && (bodies[1].is_ball() || bodies[1].is_plane());
+        let mut departure: Option<PairDeparture> = None;
+        let (mut unresolved, mut clock, mut contacts, mut steps) = (0, 0.0, 0, 0);
         let ending = loop {
-            let (apart, velocity) = (places[0] - places[1], velocities[0] - velocities[1]);
-            let (enters, leaves) = self.within(apart, velocity, reach);
-            let mut flight = flight(bodies, apart, velocity, &turning);
+            let (enters, leaves) = self.within(reach);
             if contacts == 0 && leaves <= 0.0 {
                 break Ending::Missed;
             }
-            let tops = [&bodies[0].top, &bodies[1].top];
-            if departure.is_some_and(|left| search.rests(tops, &mut flight, &left)) {
-                break Ending::Collapse;
-            }
-            let found = search.first(
-                &mut flight,
-                departure,
-                [enters, leaves],
-                self.between,
-                &mut steps,
-            );
-            let found = found.map_err(|()| Trouble::Unconverged)?;
-            let time = found.map_or(if leaves < f64::INFINITY { leaves } else { 0.0 }, |touch| {
-                touch.time
-            });
-            clock += time;
-            for i in 0..2 {
-                places[i] = velocities[i].mul_add(time, places[i]);
-                let FreeBody { attitude, spin } = turning[i];
-                if !bodies[i].is_plane() {
-                    let (attitude, spin) = Rotation::new(bodies[i].top, attitude, spin).at(time);
-                    turning[i] = FreeBody { attitude, spin };
+            let length = |found: Option<PairTouch>| match found {
+                Some(touch) => touch.time,
+                None if leaves < f64::INFINITY => leaves,
+                None => 0.0,
+            };
+            let found;
+            if balls && departure.is_none_or(|left| left.speed > 0.0) {
+                // Balls touch where they come into reach of each other, and that once.
+                steps += 1;
+                found = (contacts == 0 && self.approach()).then_some(PairTouch {
+                    time: enters,
+                    parts: [0, 0],
+                    size: f64::INFINITY,
+                });
+                let time = length(found);
+                for (state, body) in self.states.iter_mut().zip(bodies) {
+                    state.turn(body, time);
                 }
+            } else {
+                let mut flight = flight(bodies, &self.states);
+                let tops = [&bodies[0].top, &bodies[1].top];
+                if departure.is_some_and(|left| search.rests(tops, &mut flight, &left)) {
+                    break Ending::Collapse;
+                }
+                let times = [enters, leaves];
+                found = search
+                    .first(&mut flight, departure, times, self.between, &mut steps)
+                    .map_err(|()| Trouble::Unconverged)?;
+                let time = length(found);
+                for (i, state) in self.states.iter_mut().enumerate() {
+                    match flight.turns[i].rotated(time) {
+                        _ if bodies[i].is_plane() => {}
+                        Some(later) => (state.attitude, state.spin) = later,
+                        None => state.turn(bodies[i], time),
+                    }
+                }
+            }
+            let time = length(found);
+            clock += time;
+            for state in &mut self.states {
+                state.position = state.velocity.mul_add(time, state.position);
             }
             let Some(touch) = found else {
                 break if contacts == 0 {
@@ -243,15 +307,7 @@ impl Following<'_, '_> {
                     Ending::Parted
                 };
             };
-            let speed = self.collide(
-                &search,
-                clock,
-                contacts,
-                &touch,
-                &places,
-                &mut velocities,
-                &mut turning,
-            )?;
+            let speed = self.collide(&search, clock, contacts, &touch)?;
             let parts = touch.parts;
             departure = Some(PairDeparture { parts, speed });
             contacts += 1;
@@ -264,12 +320,8 @@ impl Following<'_, '_> {
                 break Ending::Collapse;
             }
         };
-        let [one, two] = turning;
         Ok(Outcome {
-            states: [
-                one.state(bodies[0], places[0], velocities[0]),
-                two.state(bodies[1], places[1], velocities[1]),
-            ],
+            states: self.states,
             time: clock,
             contacts,
             ending,
@@ -277,9 +329,28 @@ impl Following<'_, '_> {
         })
     }
 
+    /// The place and the velocity of the first body from the second.
+    #[inline(always)]
+    fn relative(&self) -> (Vector, Vector) {
+        let [one, two] = &self.states;
+        (one.position - two.position, one.velocity - two.velocity)
+    }
+
+    /// True if the centres approach each other, or the centre the plane.
+    #[inline(always)]
+    fn approach(&self) -> bool {
+        let (apart, velocity) = self.relative();
+        if self.bodies[1].is_plane() {
+            velocity.z < 0.0
+        } else {
+            apart.dot(velocity) < 0.0
+        }
+    }
+
     /// The times between which the bodies can touch.
     #[inline(always)]
-    fn within(&self, apart: Vector, velocity: Vector, reach: f64) -> (f64, f64) {
+    fn within(&self, reach: f64) -> (f64, f64) {
+        let (apart, velocity) = self.relative();
         if self.bodies[1].is_plane() {
             let time = (reach - apart.z) / velocity.z;
             return if velocity.z > 0.0 {
@@ -319,32 +390,24 @@ impl Following<'_, '_> {
 
     /// The impact of a contact; returns the speed at which its points leave each other.
     #[inline(always)]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the state of an encounter, part by part"
-    )]
     fn collide(
         &mut self,
         search: &PairSearch<'_>,
         time: f64,
         number: u64,
         touch: &PairTouch,
-        places: &[Vector; 2],
-        velocities: &mut [Vector; 2],
-        turning: &mut [FreeBody; 2],
     ) -> Result<f64, Trouble> {
         let bodies = self.bodies;
-        let apart = places[0] - places[1];
-        let velocity = velocities[0] - velocities[1];
-        let poses = [turning[0].pose(), turning[1].pose()];
+        let (apart, velocity) = self.relative();
+        let [one, two] = &self.states;
         let [row, column] = touch.parts;
         let between = &self.between[row * bodies[1].pieces.len() + column];
         // One point for both, so that the angular momentum stays what it is.
+        let poses = [one.pose(), two.pose()];
         let (normal, first) = search.meeting(apart, touch.parts, &poses, between);
         let arms = [first, first + apart];
         let frame = frame(normal);
         let back = frame.inverse();
-        let [one, two] = &*turning;
         let compliance =
             one.compliance(bodies[0], back, arms[0]) + two.compliance(bodies[1], back, arms[1]);
         let met = back.rotate(velocity + one.moves(arms[0]) - two.moves(arms[1])); // (7)
@@ -359,37 +422,29 @@ impl Following<'_, '_> {
         (self.hit)(&Hit {
             time,
             normal,
-            point: places[0] + first,
+            point: one.position + first,
             impulse,
             apart,
             velocity,
             speeds: [-met.z, answer.separation_speed],
         });
-        for (i, sign) in [(0, 1.0), (1, -1.0)] {
-            velocities[i] = impulse.mul_add(sign * bodies[i].inverse_mass, velocities[i]);
-            let torque = turning[i].attitude.inverse().rotate(arms[i].cross(impulse));
-            let [x, y, z] = bodies[i].inverse_moments;
-            let change = Vector::new(x * torque.x, y * torque.y, z * torque.z); // (11)
-            turning[i].spin = change.mul_add(sign, turning[i].spin);
-        }
+        let [one, two] = &mut self.states;
+        one.push(bodies[0], arms[0], impulse, 1.0);
+        two.push(bodies[1], arms[1], impulse, -1.0);
         Ok(answer.separation_speed)
     }
 }
 
 #[inline(always)]
-fn flight(
-    bodies: [&Partner; 2],
-    apart: Vector,
-    velocity: Vector,
-    turning: &[FreeBody; 2],
-) -> PairFlight {
-    let (one, first) = turning[0].turn(bodies[0]);
-    let (two, second) = turning[1].turn(bodies[1]);
+fn flight(bodies: [&Partner; 2], states: &[FreeBody; 2]) -> PairFlight {
+    let turn = |i: usize| {
+        let FreeBody { attitude, spin, .. } = states[i];
+        Turn::new(&bodies[i].top, bodies[i].axis, attitude, spin)
+    };
     PairFlight {
-        apart,
-        velocity,
-        turns: [one, two],
-        bounds: [first, second],
+        apart: states[0].position - states[1].position,
+        velocity: states[0].velocity - states[1].velocity,
+        turns: [turn(0), turn(1)],
     }
 }
 

@@ -5,8 +5,8 @@ mod partner;
 mod run;
 mod sample;
 
-pub(crate) use encounter::Following;
 pub use encounter::{Ending, Hit, Outcome, PairState, Trouble, encounter, narrowest};
+pub(crate) use encounter::{Following, FreeBody};
 pub use partner::Partner;
 pub(crate) use run::failed;
 pub use run::{ENCOUNTER, Encountered, HIT, PairTable, PairVariable};

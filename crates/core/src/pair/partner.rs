@@ -19,6 +19,7 @@ pub struct Partner {
     pub(crate) pieces: Vec<Piece>,
     /// The principal axis on which the centres of all parts are, if it precesses.
     pub(crate) axis: Option<usize>,
+    ball: bool,
 }
 
 impl Partner {
@@ -46,6 +47,10 @@ impl Partner {
             };
             top.precesses(axis) && !pieces.iter().any(off)
         };
+        let ball = |piece: &Piece| match piece.kind {
+            PieceKind::Ball(place, _) => place == Vector::default(),
+            _ => false,
+        };
         let reach = |piece: &Piece| match piece.kind {
             PieceKind::Ball(_, radius) => piece.reach + radius,
             _ => piece.reach,
@@ -55,6 +60,7 @@ impl Partner {
             inverse_moments: top.moments().map(|moment| 1.0 / moment),
             reach: pieces.iter().map(reach).fold(0.0, f64::max),
             axis: (0..3).rev().find(|&axis| on(axis)),
+            ball: pieces.iter().all(ball),
             top,
             axes,
             pieces,
@@ -71,20 +77,30 @@ impl Partner {
             axes: Quaternion::IDENTITY,
             pieces: vec![Piece::plane()],
             axis: None,
+            ball: false,
         }
     }
 
     /// True for a plane.
+    #[inline(always)]
     pub fn is_plane(&self) -> bool {
         self.inverse_mass == 0.0
     }
 
+    /// True for a ball about the centre of mass.
+    #[inline(always)]
+    pub(crate) fn is_ball(&self) -> bool {
+        self.ball
+    }
+
     /// Mass; infinite of a plane.
+    #[inline(always)]
     pub fn mass(&self) -> f64 {
         1.0 / self.inverse_mass
     }
 
     /// The principal moments of inertia.
+    #[inline(always)]
     pub fn moments(&self) -> [f64; 3] {
         self.top.moments()
     }
@@ -114,7 +130,17 @@ impl Partner {
             .momentum(principal, principal.inverse().rotate(state.spin))
     }
 
+    /// The kinetic energy of the centre of mass.
+    #[inline(always)]
+    pub fn translational_energy(&self, velocity: Vector) -> f64 {
+        if self.is_plane() {
+            return 0.0;
+        }
+        0.5 * self.mass() * velocity.dot(velocity)
+    }
+
     /// The kinetic energy of the rotation with ω in the axes of space.
+    #[inline(always)]
     pub fn rotational_energy(&self, attitude: Quaternion, spin: Vector) -> f64 {
         if self.is_plane() {
             return 0.0;

@@ -1,15 +1,16 @@
 //! Many encounters, on all cores: each depends on the seed and its number alone.
 
-use super::encounter::{Following, Hit, Outcome, PairState, Trouble, narrowest};
+use super::encounter::{Following, FreeBody, Hit, Outcome, PairState, Trouble, narrowest};
 use super::{Partner, sample::Encounters};
 use crate::Error;
 use crate::contact::Between;
 use crate::law::Law;
-use crate::math::Vector;
+use crate::math::{Quaternion, Vector};
 use crate::random::of_impact;
 use crate::simd::Level;
 use crate::simd::elementary::angle;
 use crate::threads::{Monitor, Resources};
+use pulp::{Simd, WithSimd};
 use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -289,14 +290,17 @@ impl Encounters<'_> {
                 }
                 let rows = number * BLOCK..self.count.min((number + 1) * BLOCK);
                 let size = rows.len() as u64;
+                let mut sum = T::default();
                 let block = EncounterBlock {
                     encounters: self,
                     law,
                     given,
                     rows,
                     between: &mut between,
+                    add: &add,
+                    sum: &mut sum,
                 };
-                let sum = block.sum(&add)?;
+                Level::run_scalar(block)?;
                 done.lock()
                     .expect("nobody panics who holds it")
                     .push((number, sum));
@@ -320,30 +324,33 @@ impl Encounters<'_> {
             first,
         } = found;
         let after = &outcome.states;
-        let [u, later] = [before, after].map(|[one, two]| one.velocity - two.velocity);
+        let [one, two] = self.bodies;
+        let relative = |states: &[PairState; 2]| states[0].velocity - states[1].velocity;
+        let (u, later) = (relative(before), relative(after));
         let sizes = u.norm() * later.norm();
         let (sine, cosine) = (u.cross(later).norm() / sizes, u.dot(later) / sizes);
-        let [translation, translation_after] = [before, after].map(|states| {
-            [0, 1].map(|i| {
-                let (v, body) = (states[i].velocity, self.bodies[i]);
-                if body.is_plane() {
-                    0.0
-                } else {
-                    0.5 * body.mass() * v.dot(v)
-                }
-            })
-        });
-        let [rotation, rotation_after] = [before, after].map(|states| {
-            [0, 1].map(|i| self.bodies[i].rotational_energy(states[i].attitude, states[i].spin))
-        });
-        let reduced = 1.0 / (self.bodies[0].inverse_mass + self.bodies[1].inverse_mass);
+        let of = |states: &[PairState; 2]| {
+            let [first, second] = states;
+            let translation = [
+                one.translational_energy(first.velocity),
+                two.translational_energy(second.velocity),
+            ];
+            let rotation = [
+                one.rotational_energy(first.attitude, first.spin),
+                two.rotational_energy(second.attitude, second.spin),
+            ];
+            [translation, rotation]
+        };
+        let [translation, rotation] = of(before);
+        let [translation_after, rotation_after] = of(after);
+        let reduced = 1.0 / (one.inverse_mass + two.inverse_mass);
         let energy = |u: Vector, [a, b]: [f64; 2]| 0.5 * reduced * u.dot(u) + a + b;
         let (speed, centre, coefficients) = match first {
             None => (f64::NAN, f64::NAN, [f64::NAN; 3]),
             Some(hit) => {
                 let along = hit.apart / hit.apart.norm();
                 let closing = -hit.velocity.dot(along);
-                let centres = if self.bodies[1].is_plane() {
+                let centres = if two.is_plane() {
                     -later.z / u.z
                 } else {
                     later.dot(along) / closing
@@ -353,58 +360,67 @@ impl Encounters<'_> {
                 (towards, closing, [centres, apart / towards, whole.sqrt()])
             }
         };
-        row.extend([
+        let deflection = if sizes > 0.0 {
+            angle(sine, cosine)
+        } else {
+            f64::NAN
+        };
+        row.extend_from_slice(&[
             outcome.contacts as f64,
             f64::from(outcome.ending as u8),
             outcome.time,
             outcome.steps as f64,
-            if sizes > 0.0 {
-                angle(sine, cosine)
-            } else {
-                f64::NAN
-            },
+            deflection,
             speed,
             centre,
         ]);
-        row.extend(coefficients);
-        row.extend([translation, translation_after, rotation, rotation_after].concat());
-        for part in [
-            |state: &PairState| state.velocity,
-            |state: &PairState| state.spin,
-            |state: &PairState| state.position,
-        ] {
-            row.extend(
-                [before, after]
-                    .into_iter()
-                    .flatten()
-                    .flat_map(|state| part(state).parts()),
-            );
+        row.extend_from_slice(&coefficients);
+        let energies = [translation, translation_after, rotation, rotation_after];
+        row.extend_from_slice(energies.as_flattened());
+        let [a, b] = before;
+        let [c, d] = after;
+        let vectors = [
+            [a.velocity, b.velocity, c.velocity, d.velocity],
+            [a.spin, b.spin, c.spin, d.spin],
+            [a.position, b.position, c.position, d.position],
+        ];
+        for [a, b, c, d] in vectors {
+            row.extend_from_slice([a.parts(), b.parts(), c.parts(), d.parts()].as_flattened());
         }
-        for state in [before, after].into_iter().flatten() {
-            let q = state.attitude;
-            row.extend([q.w, q.x, q.y, q.z]);
-        }
+        let parts = |q: Quaternion| [q.w, q.x, q.y, q.z];
+        let attitudes = [
+            parts(a.attitude),
+            parts(b.attitude),
+            parts(c.attitude),
+            parts(d.attitude),
+        ];
+        row.extend_from_slice(attitudes.as_flattened());
     }
 }
 
-/// Some encounters.
-struct EncounterBlock<'a, 'b> {
+/// Some encounters, each of which adds to a sum; one has no packs.
+struct EncounterBlock<'a, 'b, T, F> {
     encounters: &'a Encounters<'a>,
     law: &'a Law<'b>,
     given: Option<&'a [[PairState; 2]]>,
     rows: Range<usize>,
     between: &'a mut [Between],
+    add: &'a F,
+    sum: &'a mut T,
 }
 
-impl EncounterBlock<'_, '_> {
-    fn sum<T: Default>(self, add: impl Fn(&Encountered, &[Hit], &mut T)) -> Result<T, Error> {
+impl<T, F: Fn(&Encountered, &[Hit], &mut T)> WithSimd for EncounterBlock<'_, '_, T, F> {
+    type Output = Result<(), Error>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
         let Encounters {
             bodies,
             first,
             seed,
             ..
         } = *self.encounters;
-        let (mut sum, mut hits) = (T::default(), Vec::new());
+        let mut hits = Vec::new();
         for row in self.rows {
             let number = first + row as u64;
             let before = match self.given {
@@ -416,24 +432,26 @@ impl EncounterBlock<'_, '_> {
             }
             hits.clear();
             self.between.fill(Between::default());
-            let outcome = Level::run_scalar(Following {
+            let outcome = Following {
                 bodies,
                 law: self.law,
-                states: before,
+                states: FreeBody::both(bodies, &before),
                 chance: &|contact| of_impact(seed, number, contact),
                 hit: &mut |hit: &Hit| hits.push(*hit),
                 between: &mut *self.between,
-            });
+            }
+            .follow();
             let outcome =
                 outcome.map_err(|trouble| failed(self.law, trouble, (seed, number), hits.len()))?;
+            let outcome = outcome.given(bodies);
             let found = Encountered {
                 before,
                 outcome,
                 first: hits.first().copied(),
             };
-            add(&found, &hits, &mut sum);
+            (self.add)(&found, &hits, self.sum);
         }
-        Ok(sum)
+        Ok(())
     }
 }
 

@@ -15,7 +15,8 @@ use std::f64::consts::{PI, TAU};
 #[inline(always)]
 pub(crate) fn normals([(a, b), (c, d)]: [(f64, f64); 2]) -> [f64; 3] {
     let ((s, t), (u, _)) = (sincos(TAU * b), sincos(TAU * d));
-    let [p, q] = [a, c].map(|x| (-2.0 * ln(1.0 - x)).sqrt());
+    let size = |x: f64| (-2.0 * ln(1.0 - x)).sqrt();
+    let [p, q] = [size(a), size(c)];
     [p * s, p * t, q * u]
 }
 
@@ -119,34 +120,34 @@ impl Encounters<'_> {
         } else {
             self.in_space(&mut draws)
         };
-        std::array::from_fn(|i| {
+        let mut states = [PairState {
+            position: places[0],
+            velocity: velocities[0],
+            attitude: Quaternion::IDENTITY,
+            spin: Vector::default(),
+        }; 2];
+        (states[1].position, states[1].velocity) = (places[1], velocities[1]);
+        for (i, state) in states.iter_mut().enumerate() {
+            if self.bodies[i].is_plane() {
+                continue;
+            }
             let body = self.bodies[i];
-            if body.is_plane() {
-                return PairState {
-                    position: places[i],
-                    velocity: velocities[i],
-                    attitude: Quaternion::IDENTITY,
-                    spin: Vector::default(),
-                };
-            }
-            let attitude = draws.attitude();
-            let spin = match self.spin {
+            state.attitude = draws.attitude();
+            state.spin = match self.spin {
                 Some(given) => given[i],
-                None => draws.spin(body, attitude, [self.rotational[i]; 3]),
+                None => {
+                    let spin = draws.spin(body, [self.rotational[i]; 3]);
+                    (state.attitude * body.axes).rotate(spin)
+                }
             };
-            PairState {
-                position: places[i],
-                velocity: velocities[i],
-                attitude,
-                spin,
-            }
-        })
+        }
+        states
     }
 
     /// Places and velocities of two bodies; their centre of mass is at the origin.
     #[inline(always)]
     fn in_space(&self, draws: &mut Draws) -> ([Vector; 2], [Vector; 2]) {
-        let [one, two] = [0, 1].map(|i| self.bodies[i].inverse_mass);
+        let [one, two] = [self.bodies[0].inverse_mass, self.bodies[1].inverse_mass];
         let reach = self.reach();
         let (height, azimuth) = draws.pair();
         let level = (1.0 - (2.0 * height - 1.0) * (2.0 * height - 1.0))
@@ -243,14 +244,13 @@ impl Draws {
         normals([self.pair(), self.pair()])
     }
 
-    /// ω, in the axes of space, of a Maxwellian with a temperature about each principal axis.
+    /// ω, in the principal axes, of a Maxwellian with a temperature about each of them.
     #[inline(always)]
-    pub fn spin(&mut self, body: &Partner, attitude: Quaternion, temperatures: [f64; 3]) -> Vector {
+    pub fn spin(&mut self, body: &Partner, temperatures: [f64; 3]) -> Vector {
         let normals = self.normals();
-        let [x, y, z] = std::array::from_fn(|i| {
-            normals[i] * (temperatures[i] * body.inverse_moments[i]).sqrt()
-        });
-        (attitude * body.axes).rotate(Vector::new(x, y, z))
+        let part = |i: usize| normals[i] * (temperatures[i] * body.inverse_moments[i]).sqrt();
+        let [x, y, z] = [part(0), part(1), part(2)];
+        Vector::new(x, y, z)
     }
 
     /// An attitude, uniform on SO(3): K. Shoemake, *Uniform random rotations*, Graphics Gems III (1992).

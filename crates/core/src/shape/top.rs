@@ -62,20 +62,24 @@ impl Top {
         })
     }
 
+    #[inline(always)]
     pub(crate) fn symmetry(&self) -> Symmetry {
         self.symmetry
     }
 
+    #[inline(always)]
     pub(crate) fn order(&self) -> [usize; 3] {
         self.order
     }
 
     /// The principal moments.
+    #[inline(always)]
     pub fn moments(&self) -> [f64; 3] {
         self.moments
     }
 
     /// Twice the kinetic energy of rotation.
+    #[inline(always)]
     pub fn twice_energy(&self, spin: Vector) -> f64 {
         let [a, b, c] = self.moments;
         a * spin.x * spin.x + b * spin.y * spin.y + c * spin.z * spin.z

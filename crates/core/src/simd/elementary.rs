@@ -113,6 +113,7 @@ pub(crate) fn moderate_sincos_in_lanes<S: Simd, const K: usize>(
 }
 
 /// Angle in [0, π] between the z axis and a unit vector with these horizontal and vertical components.
+#[inline(always)]
 pub fn angle(sine: f64, cosine: f64) -> f64 {
     angle_in_lanes(one(sine), one(cosine)).as_slice()[0]
 }

@@ -15,6 +15,7 @@ pub(crate) use pack::{LANES, Mask, Operand, Pack};
 use pulp::Scalar;
 
 /// A pack of one lane.
+#[inline(always)]
 pub(crate) fn one(x: f64) -> Pack<Scalar, 1> {
     Pack::splat(Scalar::new(), x)
 }

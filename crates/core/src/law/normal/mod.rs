@@ -76,6 +76,7 @@ pub const MATERIALS: &[Kind<Material>] = &[
 
 impl Normal<'_> {
     /// The coefficient at a speed ≥ 0, in m/s, or in the core's unit of speed if it was scaled.
+    #[inline(always)]
     pub fn at(&self, speed: f64) -> f64 {
         self.in_lanes(Pack::<_, 1>::splat(Scalar::new(), speed))
             .as_slice()[0]
