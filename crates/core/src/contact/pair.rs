@@ -698,16 +698,7 @@ fn turning(parting: &Parting<'_>, frames: Frames) -> Vector {
 /// Attitudes, and ω in space.
 #[inline(always)]
 fn frames(poses: &[BodyPose; 2]) -> Frames {
-    [frame(&poses[0]), frame(&poses[1])]
-}
-
-#[inline(always)]
-fn frame(pose: &BodyPose) -> (Quaternion, Vector) {
-    match pose {
-        BodyPose::Any(attitude, spin) => (*attitude, attitude.rotate(*spin)),
-        // Of balls on an axis: a rotation that takes the axis where it is.
-        BodyPose::Axis(axis, [e, change, _]) => (BodyPose::about(*axis, *e), e.cross(*change)),
-    }
+    [poses[0].frame(), poses[1].frame()]
 }
 
 /// Both bodies at a time.

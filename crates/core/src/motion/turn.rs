@@ -25,10 +25,14 @@ enum Way {
     Any(Rotation),
 }
 
-/// A body at a time: its axis with **e**′ and **e**″, or attitude and ω in its own axes.
-pub(crate) enum BodyPose {
-    Axis(usize, [Vector; 3]),
-    Any(Quaternion, Vector),
+/// A body at a time: attitude and ω in its own axes, or an axis of it with **e**′ and **e**″.
+///
+/// All of it is always written: compilers compute with both beforehand, and what happens to be there may be denormal, which takes a hundred cycles.
+pub(crate) struct BodyPose {
+    attitude: Quaternion,
+    spin: Vector,
+    axis: Option<usize>,
+    motion: [Vector; 3],
 }
 
 impl Top {
@@ -85,11 +89,16 @@ impl Turn {
                 let level = third.mul_add(sine, *second * cosine);
                 let change = third.mul_add(cosine, *second * -sine) * *rate;
                 let bend = level * -(*rate * *rate);
-                BodyPose::Axis(*axis, [*along + level, change, bend])
+                BodyPose {
+                    attitude: Quaternion::IDENTITY,
+                    spin: Vector::default(),
+                    axis: Some(*axis),
+                    motion: [*along + level, change, bend],
+                }
             }
             Way::Any(rotation) => {
                 let (attitude, spin) = rotation.at(time);
-                BodyPose::Any(attitude, spin)
+                BodyPose::new(attitude, spin)
             }
         }
     }
@@ -105,22 +114,44 @@ impl Turn {
 }
 
 impl BodyPose {
+    /// The body with this attitude and ω in its own axes.
+    #[inline(always)]
+    pub fn new(attitude: Quaternion, spin: Vector) -> Self {
+        Self {
+            attitude,
+            spin,
+            axis: None,
+            motion: [Vector::default(); 3],
+        }
+    }
+
     /// Where a point of the body is, from the centre of mass, and its velocity relative to it, in space.
     #[inline(always)]
     pub fn moves(&self, point: Vector) -> [Vector; 2] {
-        match self {
-            Self::Axis(axis, [e, change, _]) => {
-                let along = point.parts()[*axis];
-                [*e * along, *change * along]
+        let Self { attitude, spin, .. } = *self;
+        match self.axis {
+            Some(axis) => {
+                let along = point.parts()[axis];
+                [self.motion[0] * along, self.motion[1] * along]
             }
-            Self::Any(attitude, spin) => {
-                [attitude.rotate(point), attitude.rotate(spin.cross(point))]
+            None => [attitude.rotate(point), attitude.rotate(spin.cross(point))],
+        }
+    }
+
+    /// Attitude, and ω in space; of balls on an axis a rotation that takes the axis where it is.
+    #[inline(always)]
+    pub fn frame(&self) -> (Quaternion, Vector) {
+        match self.axis {
+            Some(axis) => {
+                let [e, change, _] = self.motion;
+                (Self::about(axis, e), e.cross(change))
             }
+            None => (self.attitude, self.attitude.rotate(self.spin)),
         }
     }
 
     /// A rotation that takes this principal axis to a unit vector.
-    pub fn about(axis: usize, e: Vector) -> Quaternion {
+    fn about(axis: usize, e: Vector) -> Quaternion {
         let from = UNITS[axis];
         let (along, across) = (from.dot(e), from.cross(e));
         if along > -0.5 {
@@ -136,11 +167,10 @@ impl BodyPose {
     /// Its acceleration.
     #[inline(always)]
     pub fn bends(&self, top: &Top, point: Vector) -> Vector {
-        match self {
-            Self::Axis(axis, [_, _, bend]) => *bend * point.parts()[*axis],
-            Self::Any(attitude, spin) => {
-                attitude.rotate(top.change(*spin).cross(point) + spin.cross(spin.cross(point)))
-            }
+        let Self { attitude, spin, .. } = *self;
+        match self.axis {
+            Some(axis) => self.motion[2] * point.parts()[axis],
+            None => attitude.rotate(top.change(spin).cross(point) + spin.cross(spin.cross(point))),
         }
     }
 }

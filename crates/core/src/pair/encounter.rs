@@ -198,8 +198,13 @@ impl FreeBody {
     }
 
     #[inline(always)]
+    fn rotation(&self, body: &Partner) -> Turn {
+        Turn::new(&body.top, body.axis, self.attitude, self.spin)
+    }
+
+    #[inline(always)]
     fn pose(&self) -> BodyPose {
-        BodyPose::Any(self.attitude, self.spin)
+        BodyPose::new(self.attitude, self.spin)
     }
 
     /// The velocity of a point relative to the centre of mass.
@@ -437,14 +442,11 @@ impl Following<'_, '_> {
 
 #[inline(always)]
 fn flight(bodies: [&Partner; 2], states: &[FreeBody; 2]) -> PairFlight {
-    let turn = |i: usize| {
-        let FreeBody { attitude, spin, .. } = states[i];
-        Turn::new(&bodies[i].top, bodies[i].axis, attitude, spin)
-    };
+    let [one, two] = states;
     PairFlight {
-        apart: states[0].position - states[1].position,
-        velocity: states[0].velocity - states[1].velocity,
-        turns: [turn(0), turn(1)],
+        apart: one.position - two.position,
+        velocity: one.velocity - two.velocity,
+        turns: [one.rotation(bodies[0]), two.rotation(bodies[1])],
     }
 }
 
