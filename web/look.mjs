@@ -10,6 +10,14 @@ export const PHONE = { width: 390, height: 844 };
 const SHOTS = fileURLToPath(new URL("shots/", import.meta.url));
 const stops = Array.from({ length: 10 }, (_, k) => k + 1);
 
+/** A gas after a few collisions. */
+async function cooled(page) {
+  await page.locator("#gas-pace").selectOption("4");
+  await page.locator("#gas-play").click();
+  await page.waitForFunction(() => Number(/([\d.]+) collisions/.exec(document.getElementById("gas-text").textContent)?.[1]) > 10);
+  await page.locator("#gas-play").click();
+}
+
 const LOOKS = {
   laptop: { hash: "" },
   whole: { hash: "", whole: true },
@@ -32,6 +40,14 @@ const LOOKS = {
     const hash = `shape=${shape}&law=coulomb&faces=20&particles=50&impacts=50&impact=2`;
     return [[shape, { hash }], [`${shape}-dark`, { hash, scheme: "dark" }], [`${shape}-phone`, { hash, ...PHONE }]];
   })),
+  pair: { hash: "show=pair&separation=0.006&encounter=3" },
+  "pair-dark": { hash: "show=pair&shape=spheroid&polar=0.006&law=coulomb&encounter=5", scheme: "dark" },
+  "pair-phone": { hash: "show=pair&separation=0.006&encounter=3", ...PHONE, whole: true },
+  gas: { hash: "show=gas&separation=0.006&law=frictionless&normal=0.9", act: cooled },
+  "gas-dark": { hash: "show=gas&shape=box&law=coulomb&normal=0.8&grains=200", scheme: "dark", act: cooled },
+  "gas-phone": { hash: "show=gas&separation=0.006&law=frictionless&normal=0.9", ...PHONE, act: cooled, whole: true },
+  "pair-boxes": { hash: "show=pair&shape=box&meeting=given&encounter=4" },
+  "pair-present": { hash: "show=pair&separation=0.006&encounter=3&present=1", width: 1920, height: 1080 },
   print: { hash: "stop=3", print: true },
 };
 

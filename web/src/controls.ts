@@ -4,7 +4,7 @@ import { problem } from "./link";
 import { outlineOf } from "./outline";
 import { part } from "./page";
 import { meshOf, rowsOf } from "./rigid";
-import { applies, bodyOf, MOST_IMPACTS, ORIENTATIONS, rounded, type Setup } from "./setup";
+import { applies, bodyOf, MEETINGS, MOST_IMPACTS, ORIENTATIONS, rounded, type Setup, type Show } from "./setup";
 import { nice } from "./statistics";
 import { beside, LAWS, LISTS, PARAMETERS, SHAPES, sizeOf, written, type Parameter } from "./table";
 
@@ -69,6 +69,13 @@ const SLIDERS: readonly Slider[] = [
   { key: "incline", name: "Tilt of the plane", unit: "°", factor: DEGREES, low: 0, high: 45, step: 0.5, more: true },
   { key: "velocity_x", name: "Thrown sideways", unit: "m/s", factor: 1, low: -2, high: 2, step: 0.01, more: true },
   { key: "velocity_z", name: "Thrown upwards", unit: "m/s", factor: 1, low: -2, high: 2, step: 0.01, more: true },
+  { key: "thermal_speed", name: "Thermal speed √(T/m)", title: "of translation, of which the velocities are drawn", unit: "m/s", factor: 1, low: 0.01, high: 2, step: 0.01 },
+  { key: "temperature_ratio", name: "T of rotation / T of translation", title: "of which the spins are drawn", unit: "", factor: 1, low: 0, high: 5, step: 0.05 },
+  { key: "grains", name: "Particles of the gas", unit: "", factor: 1, low: 50, high: 600, step: 10 },
+  { key: "relative_speed", name: "Relative speed", unit: "m/s", factor: 1, low: 0.01, high: 2, step: 0.01 },
+  { key: "impact_parameter", name: "Impact parameter / largest", title: "distance between the lines of the centres over the largest at which the bodies can touch", unit: "", factor: 1, low: 0.01, high: 1, step: 0.01 },
+  { key: "spin_1", name: "Spin of the first", title: "about the normal of the plane of the paths", unit: "rad/s", factor: 1, low: -300, high: 300, step: 1 },
+  { key: "spin_2", name: "Spin of the second", title: "about the normal of the plane of the paths", unit: "rad/s", factor: 1, low: -300, high: 300, step: 1 },
   { key: "gravity", name: "Gravity", unit: "m/s²", factor: 1, low: 0.5, high: 30, step: 0.01, more: true },
   { key: "minimum_speed", name: "Stop below", unit: "m/s", factor: 1, low: 0, high: 0.5, step: 0.01, more: true },
 ];
@@ -86,6 +93,7 @@ const CHOICES: readonly Choice[] = [
   kinds("shape", "Shape", SHAPES),
   kinds("law", "Collision law", LAWS),
   ...[...PARAMETERS.values()].flatMap(({ name, names }) => (names ? [{ key: name, name: capital(name), options: names, labels: names.map(capital) }] : [])),
+  { key: "meeting", name: "Two bodies meet", options: MEETINGS, labels: ["as in a gas", "as given here"] },
   { key: "orientation", name: "Axis at release", options: ORIENTATIONS, labels: ["θ uniform", "every direction alike", "one particle, θ given"] },
 ];
 const later = (key: string) => SLIDERS.find((slider) => slider.key === key)?.more === true;
@@ -93,7 +101,7 @@ const named = (table: readonly { parameters: Parameter[] }[]) =>
   [...new Set(table.flatMap(({ parameters }) => parameters.map(({ name }) => name)))].filter((name) => !later(name));
 /** The choices and sliders in the order of the page; what follows the last is under "More". */
 const ORDER: readonly string[] = [
-  "shape", ...named(SHAPES), "file", "law", ...named(LAWS), "release_height", "orientation", "angle", "spin_y", "particles", "impacts", "seed",
+  "shape", ...named(SHAPES), "file", "law", ...named(LAWS), "meeting", "thermal_speed", "temperature_ratio", "grains", "relative_speed", "impact_parameter", "spin_1", "spin_2", "release_height", "orientation", "angle", "spin_y", "particles", "impacts", "seed",
 ];
 
 const nameOf = (key: string) => [...SLIDERS, ...CHOICES, ...TABLES].find((x) => x.key === key)!.name;
@@ -111,6 +119,7 @@ type Load = (file: File, unit: number, key?: string) => void;
 
 export class Controls {
   private setup!: Setup;
+  private looks!: Show;
   private readonly fields = new Map<string, { row: HTMLElement; show: () => void }>();
 
   constructor(host: HTMLFormElement, private readonly changed: (key: string, value: string | number) => void, private readonly load: Load) {
@@ -120,22 +129,22 @@ export class Controls {
     for (const key of ORDER) host.append(this.field(key));
     for (const { key, more: hidden } of SLIDERS) if (hidden) more.append(this.field(key));
     host.append(more);
-    this.quick.addEventListener("change", () => this.show(this.setup));
+    this.quick.addEventListener("change", () => this.show(this.setup, this.looks));
   }
 
   /** Which field is shown where there is room for one only. */
   private readonly quick = part<HTMLSelectElement>("quick");
 
   /** Shows the values of a set-up. */
-  show(setup: Setup): void {
-    this.setup = setup;
-    const there = ORDER.filter((key) => applies(key, setup));
+  show(setup: Setup, looks: Show): void {
+    [this.setup, this.looks] = [setup, looks];
+    const there = ORDER.filter((key) => applies(key, setup, looks));
     const wanted = there.find((key) => key === this.quick.value) ?? first(setup);
     // An open list stays as it is.
     if ([...this.quick.options].map(({ value }) => value).join() !== there.join()) this.quick.replaceChildren(...there.map((key) => new Option(nameOf(key), key)));
     this.quick.value = wanted;
     for (const [key, { row, show }] of this.fields) {
-      row.hidden = !applies(key, setup);
+      row.hidden = !applies(key, setup, looks);
       row.classList.toggle("quick", key === wanted);
       show();
     }

@@ -9,6 +9,8 @@ import { duration } from "./energies";
 import { initial, toHash, type State } from "./link";
 import { part } from "./page";
 import { endings, inStep, KINDS, notable, type Kind } from "./pick";
+import { Gas } from "./gas/gas";
+import { Pairs } from "./pair/pairs";
 import { Player } from "./player";
 import type { Setup } from "./setup";
 import { Statistics } from "./statistics";
@@ -23,6 +25,8 @@ export class Explorer {
   readonly charts: Record<ChartName, Chart>;
   readonly paper = new Paper(part("drawing"));
   readonly player: Player;
+  private pairs: Pairs | undefined;
+  private cooling: Gas | undefined;
   private drawing = false;
   private drawn = 0;
   private ended = 0;
@@ -40,6 +44,21 @@ export class Explorer {
     };
   }
 
+  /** Two bodies, once somebody looks at them. */
+  get meeting(): Pairs {
+    return (this.pairs ??= new Pairs(this.pool, () => this.changed()));
+  }
+
+  /** A gas, likewise. */
+  get gas(): Gas {
+    return (this.cooling ??= new Gas(this.pool, () => this.changed(), (error) => this.problem(error.message)));
+  }
+
+  /** What plays now. */
+  get playing(): Player | Pairs | Gas {
+    return { plane: this.player, pair: this.pairs, gas: this.cooling }[this.state.show] ?? this.player;
+  }
+
   /** Whether all impacts are there. */
   get done(): boolean {
     return this.ended === this.wanted.length;
@@ -51,14 +70,13 @@ export class Explorer {
 
   /** Takes a state, and computes what is new in it. */
   go(state: State, play = false, kind?: Kind): void {
-    const old = this.state;
     part("found").textContent = "";
     this.waiting = [];
     this.state = state;
+    if (state.show !== "plane") return void this.fly(play);
     for (const which of ["a", "b"] as const) {
       const setup = state[which];
-      const same = this.runs[which] && JSON.stringify(old[which]) === JSON.stringify(setup);
-      if (setup && same) continue;
+      if (setup && JSON.stringify(this.runs[which]?.run.setup) === JSON.stringify(setup)) continue;
       this.runs[which]?.run.cancel();
       delete this.runs[which];
       if (setup) this.start(which, setup);
@@ -68,6 +86,20 @@ export class Explorer {
     else void this.replay(state.impact > 0 ? state.impact : undefined, play);
     this.redraw();
     this.changed();
+  }
+
+  /** Shows the encounter of the state, or its gas. */
+  private async fly(play: boolean): Promise<void> {
+    this.player.clock.playing = false;
+    this.problem("");
+    this.changed();
+    const { a, show } = this.state;
+    try {
+      await (show === "pair" ? this.meeting.show(this.state, play) : this.gas.start(a, play));
+      document.documentElement.dataset.state = "done";
+    } catch (error) {
+      this.problem((error as Error).message.replace("this body", a.shape));
+    }
   }
 
   /** One run, from its first impact to its digest. */
@@ -168,11 +200,15 @@ export class Explorer {
     for (const chart of Object.values(this.charts)) chart.draw();
     this.paper.draw();
     this.player.stage?.flatten(this.player.clock.time);
+    this.pairs?.space?.flatten(this.pairs.clock.time);
+    this.cooling?.flatten();
   }
 
   /** Draws everything in the colours and the size in force. */
   restyle(): void {
     this.player.stage?.restyle();
+    this.pairs?.space?.restyle();
+    this.cooling?.restyle();
     this.redraw();
   }
 

@@ -1,6 +1,6 @@
 /** The state of the page as the part of its address after #, so that a link is a set-up. */
 
-import { DEFAULT, MOST_IMPACTS, ORIENTATIONS, rounded, type Setup } from "./setup";
+import { DEFAULT, MEETINGS, MOST_IMPACTS, ORIENTATIONS, rounded, SHOWS, type Setup, type Show } from "./setup";
 import { wrongTable } from "./rigid";
 import { LAWS, PARAMETERS, SHAPES } from "./table";
 import { TOUR, at } from "./tour";
@@ -36,6 +36,9 @@ export interface State {
   /** The particle and the impact in the scene. */
   particle: number;
   impact: number;
+  /** What is looked at, and which encounter. */
+  show: Show;
+  encounter: number;
   /** Stop of the tour; 0: none. */
   stop: number;
 }
@@ -49,6 +52,8 @@ export const initial = (): State => ({
   chart: "map",
   particle: 0,
   impact: 0,
+  show: "plane",
+  encounter: 0,
   stop: 0,
 });
 
@@ -57,6 +62,7 @@ const CHOICES: Record<string, readonly string[]> = {
   shape: keys(SHAPES),
   law: keys(LAWS),
   orientation: ORIENTATIONS,
+  meeting: MEETINGS,
   ...Object.fromEntries([...PARAMETERS.values()].flatMap(({ name, names }) => (names ? [[name, names]] : []))),
 };
 
@@ -71,6 +77,13 @@ export const LIMITS: Record<string, [number, number, boolean?]> = {
   velocity_z: [-100, 100],
   incline: [0, 1.4],
   minimum_speed: [0, 10],
+  thermal_speed: [1e-6, 100],
+  temperature_ratio: [0, 1000],
+  relative_speed: [1e-6, 100],
+  impact_parameter: [1e-6, 1],
+  spin_1: [-1e5, 1e5],
+  spin_2: [-1e5, 1e5],
+  grains: [10, 2000, true],
   particles: [1, MOST_IMPACTS, true],
   impacts: [1, 20_000, true],
   seed: [0, Number.MAX_SAFE_INTEGER, true],
@@ -140,7 +153,7 @@ function all(state: State): string {
     out.set("b", "1");
     write("b.", state.b, out);
   }
-  for (const key of ["speed", "range", "density", "chart", "particle", "impact", "stop"] as const) {
+  for (const key of ["speed", "range", "density", "chart", "particle", "impact", "show", "encounter", "stop"] as const) {
     if (state[key] !== start[key]) out.set(key === "density" ? DENSITY_OF : key, String(state[key]));
   }
   return out.toString();
@@ -159,7 +172,7 @@ export function fromHash(hash: string): { state: State; problems: string[] } {
   let state = initial();
   state.a = read("", from, problems);
   if (from.has("b")) state.b = read("b.", from, problems);
-  const number = (key: "speed" | "particle" | "impact" | "stop", least: number, most: number) => {
+  const number = (key: "speed" | "particle" | "impact" | "encounter" | "stop", least: number, most: number) => {
     const x = Number(from.get(key) ?? NaN);
     if (from.has(key)) {
       if (x >= least && x <= most) state[key] = key === "speed" ? x : Math.floor(x);
@@ -169,14 +182,16 @@ export function fromHash(hash: string): { state: State; problems: string[] } {
   number("speed", -100, 100);
   number("particle", 0, MOST_IMPACTS);
   number("impact", 0, MOST_IMPACTS);
+  number("encounter", 0, 2 ** 32 - 1);
   number("stop", 0, TOUR.length);
   if (state.stop && [...from.keys()].every((key) => key === "stop" || key === PRESENT)) state = at(state.stop, state);
-  const one = <K extends "range" | "density" | "chart">(key: K, of: readonly State[K][], name: string = key) => {
+  const one = <K extends "range" | "density" | "chart" | "show">(key: K, of: readonly State[K][], name: string = key) => {
     const found = of.find((x) => x === from.get(name));
     if (found !== undefined) state[key] = found;
   };
   one("range", RANGES);
   one("density", DENSITIES, DENSITY_OF);
   one("chart", ["map", ...CHARTS]);
+  one("show", SHOWS);
   return { state, problems };
 }

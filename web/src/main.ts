@@ -10,6 +10,7 @@ import { save } from "./export/save";
 import { csv, python, toml } from "./export/text";
 import { CHARTS, fromHash, initial, lacks, PRESENT, type State } from "./link";
 import { onChange, onClick, part } from "./page";
+import { PAIR_KINDS } from "./pair/pairs";
 import { KINDS, type Kind } from "./pick";
 import { rastered } from "./charts/pen";
 import { readBody } from "./files";
@@ -48,7 +49,7 @@ function begin(pool: Pool): void {
     const setup = changed(state[which]!, key, value);
     // Another body has its own range.
     const range = key === "shape" && which === "a" ? "near" : state.range;
-    explorer.go({ ...state, [which]: setup, particle: 0, impact: 0, stop: state.stop, range }, explorer.player.clock.playing);
+    explorer.go({ ...state, [which]: setup, particle: 0, impact: 0, stop: state.stop, range }, explorer.playing.playing);
   }, (file, unit, key) => void take(file, unit, key));
   const explorer = new Explorer(pool, () => refresh());
 
@@ -79,11 +80,16 @@ function begin(pool: Pool): void {
     void take(file, controls.unit);
   });
 
+  const shows = [...document.querySelectorAll<HTMLButtonElement>("button[data-show]")];
+
   function refresh(): void {
     if (!explorer) return; // the first frame
     const { state, player } = explorer;
-    if (!state.b) which = "a";
-    controls.show(state[which]!);
+    if (!state.b || state.show !== "plane") which = "a";
+    controls.show(state[which]!, state.show);
+    document.documentElement.dataset.show = state.show;
+    for (const button of shows) button.setAttribute("aria-pressed", String(button.dataset.show === state.show));
+    for (const name of ["pair-play", "gas-play"]) part(name).textContent = explorer.playing.playing ? "Pause" : "Play";
     part("set-up").dataset.which = which;
     part<HTMLInputElement>("compare").checked = state.b !== undefined;
     part("compare-note").hidden = !state.b;
@@ -205,10 +211,32 @@ function begin(pool: Pool): void {
     if (event.key === "Escape") present(false);
     else if (event.key === "PageDown" && stop < TOUR.length) visit(stop + 1);
     else if (event.key === "PageUp" && stop > 1) visit(stop - 1);
-    else if (event.key === " " && !(event.target instanceof HTMLButtonElement)) explorer.player.play(!explorer.player.clock.playing);
+    else if (event.key === " " && !(event.target instanceof HTMLButtonElement)) {
+      explorer.playing.play(!explorer.playing.playing);
+    }
     else return;
     event.preventDefault();
   });
+  for (const button of shows) button.addEventListener("click", () => explorer.go({ ...explorer.state, show: button.dataset.show as State["show"], stop: 0 }, !calm));
+  const kindsOfPairs = part<HTMLSelectElement>("pair-kind");
+  for (const [kind, [name]] of Object.entries(PAIR_KINDS)) kindsOfPairs.add(new Option(name, kind));
+  async function seek(by: 1 | -1): Promise<void> {
+    const encounter = await explorer.meeting.find(kindsOfPairs.value, explorer.state, by);
+    if (encounter !== undefined) explorer.go({ ...explorer.state, encounter }, !calm);
+  }
+  onClick("pair-next", () => void seek(1));
+  onClick("pair-back", () => void seek(-1));
+  onClick("pair-several", () => {
+    kindsOfPairs.value = "several";
+    void seek(1);
+  });
+  onClick("pair-play", () => explorer.meeting.play(!explorer.meeting.clock.playing));
+  onClick("pair-earlier", () => explorer.meeting.step(-1));
+  onClick("pair-later", () => explorer.meeting.step(1));
+  onClick("gas-play", () => explorer.gas.play(!explorer.gas.playing));
+  onClick("gas-again", () => explorer.go(explorer.state, true));
+  onChange("gas-pace", (pace) => (explorer.gas.pace = Number(pace)));
+  onChange("pair-pace", (pace) => (explorer.meeting.clock.pace = pace as Pace));
   onClick("tour-start", () => visit(1));
   onClick("tour-back", () => visit(explorer.state.stop - 1));
   onClick("tour-next", () => visit(explorer.state.stop + 1));

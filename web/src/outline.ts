@@ -86,9 +86,10 @@ export function farthestOf(setup: Setup, directions: Vector3[]): Vector3[] {
 }
 
 /** How a rigid body turns. */
-export function freely(setup: Setup): Turn | undefined {
-  if (!isRigid(setup)) return undefined;
-  const { rotor } = freeOf(setup);
+export const freely = (setup: Setup): Turn | undefined => (isRigid(setup) ? turnOf(freeOf(setup).rotor) : undefined);
+
+/** How a body turns with these principal moments and the rotation from its principal axes. */
+export function turnOf(rotor: readonly number[]): Turn {
   return ({ w, x, y, z }, spin, time) => {
     const found = engine.turn(Float64Array.of(...rotor, w, x, y, z, spin.x, spin.y, spin.z, time));
     return { attitude: new Quaternion(found[1], found[2], found[3], found[0]), spin: new Vector3(found[4], found[5], found[6]) };

@@ -62,6 +62,10 @@ export class Player {
     this.stopped();
   }
 
+  get playing(): boolean {
+    return this.clock.playing;
+  }
+
   /** Plays on, from the start if it is at the end; or stops. */
   play(playing: boolean): void {
     const path = this.paths[0];

@@ -4,6 +4,11 @@ import { BODIES, kindOf, LAWS, PARAMETERS, RIGID, SHAPES } from "./table";
 
 export const ORIENTATIONS = ["uniform-angle", "isotropic", "given"] as const;
 
+export const MEETINGS = ["drawn", "given"] as const;
+/** What can be looked at: a body that bounces on a plane, two in free flight, or a gas of them. */
+export const SHOWS = ["plane", "pair", "gas"] as const;
+export type Show = (typeof SHOWS)[number];
+
 export interface Setup {
   /** The parameters of bodies and laws by their names; of one, those that its entry in the table has. */
   [parameter: string]: number | string;
@@ -24,6 +29,17 @@ export interface Setup {
   /** Of the plane, in rad. */
   incline: number;
   minimum_speed: number;
+  /** How two bodies meet, and what is then given: √(T_tr/m) in m/s and T_rot/T_tr; or the relative speed, the impact parameter over the largest
+   * at which they can touch, and ω of each about the normal of the plane of their paths. */
+  meeting: (typeof MEETINGS)[number];
+  thermal_speed: number;
+  temperature_ratio: number;
+  relative_speed: number;
+  impact_parameter: number;
+  spin_1: number;
+  spin_2: number;
+  /** Particles of a gas. */
+  grains: number;
   particles: number;
   impacts: number;
   seed: number;
@@ -44,6 +60,14 @@ export const DEFAULT: Readonly<Setup> = {
   velocity_z: 0,
   incline: 0,
   minimum_speed: 0,
+  meeting: "drawn",
+  thermal_speed: 0.2,
+  temperature_ratio: 1,
+  relative_speed: 0.3,
+  impact_parameter: 0.3,
+  spin_1: 0,
+  spin_2: 0,
+  grains: 300,
   particles: 250,
   impacts: 400,
   seed: 1,
@@ -63,9 +87,19 @@ export const particlesOf = (s: Setup): number => (orientationOf(s) === "given" ?
 /** To twelve digits, so that 0.1 times 3 mm is 0.3 mm, as somebody would write it, and not a bit more. */
 export const rounded = (x: number): number => Number(x.toPrecision(12));
 
-/** Whether a parameter has a meaning in this set-up. */
-export function applies(key: string, s: Setup): boolean {
+/** The parameters of encounters, by how bodies meet. */
+const OF_MEETINGS: Record<Setup["meeting"], string[]> = { drawn: ["thermal_speed", "temperature_ratio"], given: ["relative_speed", "impact_parameter", "spin_1", "spin_2"] };
+
+/** The side of the box of a gas, in reaches of a body. */
+export const sideOf = (s: Setup): number => 5 * Math.cbrt(s.grains);
+
+/** Whether a parameter has a meaning in this set-up, of what is looked at. */
+export function applies(key: string, s: Setup, show: Show): boolean {
+  if (["shape", "law", "seed"].includes(key)) return true;
   if (PARAMETERS.has(key)) return [bodyOf(s), lawOf(s)].some(({ parameters }) => parameters.some(({ name }) => name === key));
+  const flying = ["meeting", "grains", ...Object.values(OF_MEETINGS).flat()].includes(key);
+  if (key !== "file" && flying !== (show !== "plane")) return false;
+  if (flying) return show === "gas" ? ["grains", ...OF_MEETINGS.drawn].includes(key) : ["meeting", ...OF_MEETINGS[s.meeting]].includes(key);
   if (key === "orientation") return !isRigid(s);
   if (key === "angle") return orientationOf(s) === "given";
   if (key === "particles") return orientationOf(s) !== "given";

@@ -95,6 +95,7 @@ export function at(stop: number, state: State): State {
     chart: "map",
     particle: 0,
     impact: 0,
+    show: "plane",
     ...view,
     stop,
   };

@@ -104,6 +104,119 @@ test("the path of a body without an axis goes through its impacts, with the lowe
   }
 });
 
+/** Encounters of two bodies, by how they meet; numbers of the first that touch, and of the first with several contacts. */
+const PAIRS = {
+  "dumbbells of a gas": { separation: 3e-3, normal: 0.9 },
+  "dumbbells, as given": { meeting: "given", separation: 6e-3, law: "frictionless", impact_parameter: 0.4, spin_1: 120, spin_2: -40 },
+  "spheroids with friction": { shape: "spheroid", polar: 6e-3, law: "coulomb", normal: 0.8, temperature_ratio: 3 },
+  boxes: { shape: "box", law: "frictionless", normal: 0.7 },
+  clumps: { shape: "clump", law: "coulomb", seed: 2 ** 40 + 3 },
+};
+function encounters(change) {
+  const setup = { ...page.DEFAULT, ...change };
+  const parameters = page.pairNumbers(setup);
+  const table = engine.survey(parameters, 0, 200);
+  const contacts = Array.from({ length: 200 }, (_, k) => table[3 * k]);
+  const numbers = [contacts.indexOf(1), contacts.findIndex((n) => n > 1), contacts.indexOf(0)].filter((k) => k >= 0);
+  return { setup, found: numbers.map((number) => [number, new page.Encounter(engine.meet(parameters, number)), contacts[number]]) };
+}
+
+test("an encounter has the numbers of the native engine, by the lines of Python that the page shows, and its flights lead there", () => {
+  const all = Object.values(PAIRS).map(encounters);
+  const lines = all.flatMap(({ setup, found }) => found.map(([number, encounter]) => page.pairPython(setup, number, encounter).replace(/^print\((.*)\)$/m, `
+import json
+one = $1
+print(json.dumps({name: one[name].values.tolist() for name in one.data_vars}))`)));
+  const printed = native(lines.join("\n")).split("\n").map((line) => JSON.parse(line.replaceAll("NaN", "null")));
+  const near = (found, exact, size, what) => exact.forEach((x, k) => assert.ok(Math.abs(found.getComponent(k) - x) < 1e-11 * size, `${what}: ${found.getComponent(k)} for ${x}`));
+  Object.keys(PAIRS).forEach((name, i) => {
+    // Given states are normalised once more on the way through Python.
+    const same = PAIRS[name].meeting === "given" ? (x, y) => Math.abs(x - y) <= 1e-11 * Math.abs(y) + 1e-15 : Object.is;
+    for (const [number, encounter, surveyed] of all[i].found) {
+      const [exact, { values, hits, flights }] = [printed.shift(), encounter];
+      assert.equal(values.contacts, surveyed);
+      for (const key of ["contacts", "ending", "duration", "deflection", "contact_speed", "restitution_centres", "restitution_contact", "restitution_energy"]) {
+        assert.ok(exact[key] === null ? Number.isNaN(values[key]) : same(values[key], exact[key]), `${name}, ${number}: ${key} = ${values[key]} for ${exact[key]}`);
+      }
+      assert.equal(flights.length, values.contacts + 1);
+      hits.forEach((hit, k) => {
+        assert.ok(same(hit.time, exact.time[k]));
+        for (const key of ["normal", "point", "impulse"]) hit[key].toArray().forEach((x, n) => assert.ok(same(x, exact[key][k][n]), `${name}: ${key} ${x} for ${exact[key][k][n]}`));
+        // Both bodies reach the contact, and each flight ends where the next begins.
+        const [end, start] = [encounter.at(hit.time * (1 - 1e-15)).bodies, flights[k + 1].bodies];
+        for (const side of [0, 1]) {
+          assert.ok(hit.point.distanceTo(start[side].place) < values.reach * (1 + 1e-12));
+          near(end[side].place, start[side].place.toArray(), values.reach, `${name}, place at contact ${k}`);
+          assert.ok(end[side].attitude.angleTo(start[side].attitude) < 1e-7);
+        }
+      });
+      const last = encounter.at(encounter.finish).bodies;
+      for (const side of [0, 1]) {
+        const { place, velocity, spin, attitude, translation, rotation } = last[side];
+        near(place, exact.position_after[side], values.reach, `${name}, place`);
+        near(velocity, exact.velocity_after[side], velocity.length(), `${name}, velocity`);
+        near(spin, exact.angular_velocity_after[side], spin.length() + 1e-9, `${name}, spin`);
+        const [w, x, y, z] = exact.attitude_after[side];
+        assert.ok(Math.abs(Math.abs(attitude.w * w + attitude.x * x + attitude.y * y + attitude.z * z) - 1) < 1e-12);
+        for (const [energy, kind] of [[translation, "translational"], [rotation, "rotational"]]) {
+          const native = exact[`${kind}_energy_after`][side];
+          assert.ok(Math.abs(energy - native) <= 1e-11 * native, `${name}: ${kind} energy ${energy} for ${native}`);
+        }
+      }
+    }
+  });
+  assert.equal(printed.length, 0);
+});
+
+const GASES = {
+  dumbbells: { separation: 3e-3, normal: 0.9, law: "frictionless", temperature_ratio: 0.5 },
+  "boxes with friction": { shape: "box", law: "coulomb", normal: 0.8, grains: 40 },
+};
+
+test("a gas is that of the native engine, step by step, with its temperatures", () => {
+  const steps = Object.values(GASES).map((change) => {
+    const setup = { ...page.DEFAULT, grains: 60, ...change };
+    let states = new Float64Array();
+    return [setup, [0, 1, 2].map((number) => {
+      const parameters = Float64Array.of(...page.gasNumbers(setup, 0.5, number), ...states);
+      const step = page.stepOf(engine.cool(parameters, states.length / 10));
+      states = step.states;
+      return step;
+    })];
+  });
+  const lines = steps.map(([setup, [{ reach }]]) => `
+from restitution import _core
+from restitution.pair.axes import turned_axes
+import json, numpy as np
+${page.python(setup).split("\n").filter((line) => /^(import restitution|body|law) /.test(line)).join("\n")}
+count, T, side = ${setup.grains}, body.mass * ${setup.thermal_speed} ** 2, ${page.sideOf(setup)} * ${reach}
+turned, given, found = turned_axes(body, law), None, []
+course = dict(number_density=count / (side * side * side), uniform=False, batches=1, collisions=0.5, heating=0.0, keep=True, samples=1)
+for step in range(3):
+    kind = (body.compiled, count, T, (${setup.temperature_ratio} * T,) * 3, turned)
+    (rows, given), _ = _core.cool([kind], law.compiled, course | {"seed": ${setup.seed} + step}, 1, given, None)
+    row = dict(zip([*_core.GAS_WHOLE, *_core.GAS_KIND], rows[0, 1]))
+    energies = np.array([row[f"rotational_{axis}"] for axis in "xyz"])[list(turned)]
+    found.append([given.ravel().tolist(), row["time"], 2 * row["collisions"] / count, 2 * row["contacts"] / count, body.mass * row["speed_squared"] / 3, 2 * energies.mean()])
+print(json.dumps(found))`);
+  const printed = native(lines.join("\n")).split("\n").map((line) => JSON.parse(line));
+  steps.forEach(([, course], i) => {
+    course.forEach(({ states, looks }, k) => {
+      const [exact, ...numbers] = printed[i][k];
+      assert.deepEqual([...states], exact, `${Object.keys(GASES)[i]}, step ${k}`);
+      Object.values(looks[1]).forEach((value, n) => assert.ok(Math.abs(value - numbers[n]) <= 1e-14 * numbers[n], `${value} for ${numbers[n]}`));
+      // Each step begins as the one before ended.
+      if (k) assert.ok(Math.abs(looks[0].translational / course[k - 1].looks[1].translational - 1) < 1e-12);
+    });
+    const [first, last] = [course[0].looks[0], course[2].looks[1]];
+    assert.ok(last.translational < first.translational, "it cools");
+  });
+});
+
+test("a body that no encounter can have is refused by name", () => {
+  assert.throws(() => engine.meet(page.pairNumbers({ ...page.DEFAULT, shape: "ring" }), 0), /shape = 'this body': must be made of balls/);
+});
+
 test("where a smooth body lies farthest is on its surface, with that normal", () => {
   const at = ([a, b, c], [m, n], { x, y, z }) => (Math.abs(x / a) ** n + Math.abs(y / b) ** n) ** (m / n) + Math.abs(z / c) ** m;
   const directions = [[0.6, 0, 0.8], [0.48, 0.64, -0.6], [-2 / 3, 1 / 3, 2 / 3]].map((u) => new page.Vector3(...u));

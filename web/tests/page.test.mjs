@@ -7,7 +7,7 @@ import { fileURLToPath } from "node:url";
 import { after, before, test } from "node:test";
 import { gzipSync } from "node:zlib";
 import { launch } from "./browser.mjs";
-import { digest, PAGE, page as library } from "./library.mjs";
+import { digest, engine, PAGE, page as library } from "./library.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const SHOTS = fileURLToPath(new URL("../shots/", import.meta.url));
@@ -225,8 +225,13 @@ test("the bounce plays, stops, and is stepped through by keys", async () => {
   const start = await number();
   await page.locator("#later").press("Enter");
   await page.waitForFunction((n) => Number(/\d+/.exec(document.querySelector("#impact caption").textContent)[0]) === n, start + 1);
-  // The scene is no empty canvas.
-  const colours = await page.locator("#stage canvas").first().evaluate((canvas) => {
+  assert.ok((await coloursOf(page, "#stage")) > 50);
+  await close();
+});
+
+/** How many colours a scene has: an empty canvas has one. */
+const coloursOf = (page, scene) =>
+  page.locator(`${scene} canvas`).first().evaluate((canvas) => {
     const copy = document.createElement("canvas");
     [copy.width, copy.height] = [canvas.width, canvas.height];
     copy.getContext("2d").drawImage(canvas, 0, 0);
@@ -235,7 +240,107 @@ test("the bounce plays, stops, and is stepped through by keys", async () => {
     for (let i = 0; i < data.length; i += 4) seen.add(data[i] * 65536 + data[i + 1] * 256 + data[i + 2]);
     return seen.size;
   });
-  assert.ok(colours > 50, `${colours} colours`);
+
+test("two bodies meet: the encounter is that of its link, is found, stepped through, and told in numbers", async () => {
+  const { page, close } = await open(SMALL);
+  await page.locator("#shows").getByRole("button", { name: "Two bodies" }).click();
+  await set(page, "separation", 2);
+  await page.waitForFunction(() => location.hash.includes("separation=0.006"));
+  for (const part of ["#scene", "#map", "#release_height", "#rest"]) assert.equal(await page.locator(part).isVisible(), false, part);
+  await page.locator("#pair-several").click();
+  await page.waitForFunction(() => /: [2-9] contacts/.test(document.getElementById("pair-title").textContent));
+  await page.waitForFunction(() => document.querySelector("#pair-contacts [data-now]"));
+  const number = Number(new URLSearchParams(await hashOf(page)).get("encounter"));
+  const setup = { ...library.DEFAULT, particles: 20, impacts: 100, separation: 6e-3 };
+  const { values, hits, flights } = new library.Encounter(engine.meet(library.pairNumbers(setup), number));
+  assert.ok(hits.length > 1);
+  const [before, after] = [flights[0], flights.at(-1)].map(({ bodies }) => bodies.reduce((sum, { translation, rotation }) => sum + translation + rotation, 0));
+  const energy = after / before;
+  for (const name of ["centres", "contact", "energy"]) {
+    assert.equal(await page.locator(`#pair-${name}`).textContent(), values[`restitution_${name}`].toPrecision(4).replace("-", "−"));
+  }
+  assert.equal(await page.locator("#pair-contacts tbody tr").count(), hits.length);
+  // It is held at its last contact; the one before is a step back, and nothing has changed before the first.
+  const now = () => page.locator("#pair-contacts tr[data-now] th").textContent();
+  assert.equal(await now(), String(hits.length));
+  await page.locator("#pair-earlier").press("Enter");
+  await page.waitForFunction((n) => document.querySelector("#pair-contacts tr[data-now] th")?.textContent === n, String(hits.length - 1));
+  await page.getByRole("button", { name: `Go to contact ${hits.length}` }).click();
+  await page.waitForFunction((n) => document.querySelector("#pair-contacts tr[data-now] th")?.textContent === n, String(hits.length));
+  const share = Number(/all([\d.]+)/.exec(await page.locator("#pair-energies .bar").last().textContent())[1]);
+  assert.ok(Math.abs(share - 100 * energy) < 0.06, `${share} %`);
+  assert.ok((await coloursOf(page, "#pair-stage")) > 50);
+  const told = await page.locator("#pair-numbers").innerText();
+  const again = await open(await hashOf(page), PHONE);
+  await again.page.waitForFunction(() => document.querySelector("#pair-contacts [data-now]"));
+  assert.equal((await again.page.locator("#pair-title").textContent()), `Encounter ${number}: ${hits.length} contacts`);
+  const wide = await again.page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(wide <= PHONE.width, `${wide} px`);
+  const { y, height } = await box(again.page, "#pair-energies");
+  assert.ok(y + height <= (await box(again.page, "#set-up")).y, "bars and scene are on one screen");
+  await again.close();
+  await page.locator("#pair-kind").selectOption("touch");
+  await page.locator("#pair-back").click();
+  await page.waitForFunction((n) => Number(new URLSearchParams(location.hash.slice(1)).get("encounter") ?? 0) < n, number);
+  await page.locator("#pair-next").click();
+  await page.waitForFunction((n) => location.hash.includes(`encounter=${n}`), number);
+  await page.waitForFunction((text) => document.getElementById("pair-title").textContent === text, `Encounter ${number}: ${hits.length} contacts`);
+  await page.waitForFunction(() => document.querySelector("#pair-contacts [data-now]"));
+  assert.equal(await page.locator("#pair-numbers").innerText(), told);
+  await page.evaluate(AXE);
+  const { violations } = await page.evaluate(() => axe.run());
+  assert.deepEqual(violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.html).join("; ")}`), []);
+  await set(page, "shape", "ring");
+  await page.waitForFunction(() => !document.getElementById("problem").hidden);
+  assert.match(await page.locator("#problem").textContent(), /^shape = 'ring': must be made of balls/);
+  await set(page, "shape", "dumbbell");
+  await page.locator("#shows").getByRole("button", { name: "On a plane" }).click();
+  await done(page);
+  assert.equal(await page.locator("#problem").isVisible(), false);
+  assert.deepEqual(await shown(page), [digest(setup)]);
+  await close();
+});
+
+test("two bodies with given speed, impact parameter and spins play to their end", async () => {
+  const { page, close } = await open("show=pair&meeting=given&separation=0.003", { motion: "no-preference" });
+  assert.equal(await page.locator("#thermal_speed").isVisible(), false);
+  await page.waitForFunction(() => document.getElementById("pair-play").textContent === "Pause");
+  await set(page, "impact_parameter", 0.02);
+  await set(page, "spin_1", 150);
+  await page.waitForFunction(() => location.hash.includes("spin_1=150"));
+  await page.waitForFunction(() => document.getElementById("pair-play").textContent === "Play");
+  await page.waitForFunction(() => /: \d contact/.test(document.getElementById("pair-title").textContent));
+  assert.match(await page.locator("#pair-code").textContent(), /"angular_velocity": .*\n/);
+  await close();
+});
+
+test("a gas cools in its box: the temperatures are those of the engine, its curves are drawn, and it begins anew", async () => {
+  const { page, close } = await open("show=gas&separation=0.006&law=frictionless&normal=0.9&grains=40", PHONE);
+  assert.equal(await page.locator("#gas-play").textContent(), "Play");
+  const setup = { ...library.DEFAULT, separation: 6e-3, law: "frictionless", normal: 0.9, grains: 40 };
+  const told = () => page.locator("#gas-text").textContent();
+  // The first step is there at once.
+  const { looks: [first, then] } = library.stepOf(engine.cool(library.gasNumbers(setup, 0.1, 0), 0));
+  const temperature = (then.translational / first.translational).toPrecision(3);
+  assert.match(await told(), new RegExp(`${then.collisions.toFixed(1)} collisions of each particle: T_tr = ${temperature.replace(".", "\\.")}`));
+  const start = await told();
+  await page.locator("#gas-pace").selectOption("4");
+  await page.locator("#gas-play").click();
+  await page.waitForFunction(() => Number(/([\d.]+) collisions/.exec(document.getElementById("gas-text").textContent)[1]) > 3);
+  await page.locator("#gas-play").click();
+  assert.ok(Number(/T_tr = ([\d.]+)/.exec(await told())[1]) < 0.95);
+  assert.ok((await coloursOf(page, "#gas-stage")) > 50);
+  assert.ok((await coloursOf(page, "#gas-chart")) > 20);
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(wide <= PHONE.width, `${wide} px`);
+  await page.evaluate(AXE);
+  const { violations } = await page.evaluate(() => axe.run());
+  assert.deepEqual(violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.html).join("; ")}`), []);
+  // Another gas begins with its own first step, and so does the same one.
+  await page.evaluate(() => (location.hash += "&seed=2"));
+  await page.waitForFunction((old) => /^[^:]* 0\.[12] collisions/.test(document.getElementById("gas-text").textContent) && document.getElementById("gas-text").textContent !== old, start);
+  await page.locator("#gas-again").click();
+  await page.waitForFunction(() => document.getElementById("gas-play").textContent === "Pause");
   await close();
 });
 

@@ -1,19 +1,22 @@
 //! The binding for the browser: it takes a run as a row of numbers and returns tables of numbers. It contains no physics, no threads
 //! and no unsafe block; only the functions that the page calls are exported.
 //!
-//! The page writes numbers at [`parameters`], calls [`simulate`], [`follow`], [`outline`], [`farthest`] or [`turn`], and reads the table at [`table`],
-//! of as many numbers as the call returned. A call that fails returns −1, and [`message`] says why. What bodies of revolution and laws
+//! The page writes numbers at [`parameters`], calls [`simulate`], [`follow`], [`meet`], [`survey`], [`cool`], [`outline`], [`farthest`] or [`turn`], and
+//! reads the table at [`table`], of as many numbers as the call returned. A call that fails returns −1, and [`message`] says why. What bodies of revolution and laws
 //! there are, and with which parameters, [`describe`] says.
 #![deny(unsafe_code)]
 
 mod catalogue;
+mod gas;
+mod pair;
 mod parameters;
 mod path;
 mod records;
 mod rigid;
 
 use parameters::Parameters;
-use restitution_core::{AnyBody, Error};
+use restitution_core::gas::STATE;
+use restitution_core::{AnyBody, Error, Run};
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -50,6 +53,22 @@ fn of_run(work: impl FnOnce(&Parameters<'_>) -> Result<Vec<f64>, Error>) -> f64 
     keep(Parameters::read(&given()).and_then(|parameters| work(&parameters)))
 }
 
+/// Runs `work` on the run and the numbers behind its parameters, and keeps the table that it makes.
+fn of_run_before<const N: usize>(
+    given: &[f64],
+    work: impl FnOnce(&Run<'_>, &[f64; N]) -> Result<Vec<f64>, Error>,
+) -> f64 {
+    let (run, behind) = given
+        .split_last_chunk()
+        .expect("numbers behind the parameters");
+    keep(Parameters::read(run).and_then(|parameters| work(&parameters.run()?, behind)))
+}
+
+/// The same for encounters.
+fn of_pairs(work: impl FnOnce(&Run<'_>, &[f64; pair::NUMBERS]) -> Result<Vec<f64>, Error>) -> f64 {
+    of_run_before(&given(), work)
+}
+
 /// Address of the place for `count` numbers: `parameters::COUNT` of them, and behind these a body of any shape.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
@@ -73,6 +92,30 @@ pub extern "C" fn simulate(first: usize, count: usize) -> f64 {
 #[unsafe(no_mangle)]
 pub extern "C" fn follow(particle: usize) -> f64 {
     of_run(|parameters| path::follow(&parameters.run()?, particle))
+}
+
+/// Follows one encounter of two such bodies; behind the parameters are the numbers of `pair::Pairs`. The table is that of `pair::meet`.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn meet(number: usize) -> f64 {
+    of_pairs(|run, pairs| pair::meet(run, pairs, number))
+}
+
+/// Follows `count` of them from number `first` on; the table is that of `pair::survey`.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn survey(first: usize, count: usize) -> f64 {
+    of_pairs(|run, pairs| pair::survey(run, pairs, first, count))
+}
+
+/// Follows a gas of such bodies; behind the parameters are the numbers of `gas::Start`, and behind these the states of as many particles as it
+/// has, or of none. The table is that of `gas::cool`.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn cool(states: usize) -> f64 {
+    let given = given();
+    let (rest, states) = given.split_at(given.len() - states * STATE);
+    of_run_before(rest, |run, start| gas::cool(run, start, states))
 }
 
 /// The outline of a body of revolution: two rows, of the arcs at the ends of the axis, each centre, semi-axes along and across the axis,

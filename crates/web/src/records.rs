@@ -50,10 +50,14 @@ pub fn alone(
     count: usize,
     columns: &Columns,
 ) -> Result<Records, Error> {
-    let resources = Resources {
+    let part = first..first + count;
+    run.simulate_columns(part, columns, here(), &Monitor::default())
+}
+
+/// This thread.
+pub fn here() -> Resources {
+    Resources {
         threads: 1,
         level: Level::best(),
-    };
-    let part = first..first + count;
-    run.simulate_columns(part, columns, resources, &Monitor::default())
+    }
 }

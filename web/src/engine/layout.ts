@@ -1,7 +1,7 @@
 /** A run as the row of numbers that crates/web/src/parameters.rs reads; behind it the arguments of a rigid body: crates/web/src/rigid.rs. */
 
 import { dataOf } from "../rigid";
-import { bodyOf, isRigid, lawOf, orientationOf, particlesOf, type Setup } from "../setup";
+import { bodyOf, isRigid, lawOf, MEETINGS, orientationOf, particlesOf, sideOf, type Setup } from "../setup";
 import { BODIES, LAWS, SHAPES, type Kind } from "../table";
 
 /** Columns of the table of impacts, as in crates/web/src/records.rs. */
@@ -33,6 +33,14 @@ export function numbers(s: Setup): Float64Array {
   ];
   return Float64Array.from(isRigid(s) ? row.concat(dataOf(s)) : row);
 }
+
+/** The same, and behind it how two bodies meet: crates/web/src/pair.rs. */
+export const pairNumbers = (s: Setup): Float64Array =>
+  Float64Array.of(...numbers(s), MEETINGS.indexOf(s.meeting), s.thermal_speed, s.temperature_ratio, s.relative_speed, s.impact_parameter, s.spin_1, s.spin_2);
+
+/** The same, and behind it a step of a gas: crates/web/src/gas.rs. */
+export const gasNumbers = (s: Setup, collisions: number, step: number): Float64Array =>
+  Float64Array.of(...numbers(s), s.grains, s.thermal_speed, s.temperature_ratio, sideOf(s), collisions, step);
 
 /** A name is given as its number. */
 function filled({ parameters }: Kind, s: Setup, length: number): number[] {

@@ -5,6 +5,9 @@ interface Exports {
   parameters(count: number): number;
   simulate(first: number, count: number): number;
   follow(particle: number): number;
+  meet(number: number): number;
+  survey(first: number, count: number): number;
+  cool(states: number): number;
   table(): number;
   outline(): number;
   drawing(): number;
@@ -29,6 +32,21 @@ export class Engine {
   /** The flights of one particle; see crates/web/src/path.rs. */
   follow(parameters: Float64Array, particle: number): Float64Array {
     return this.call(parameters, () => this.core.follow(particle));
+  }
+
+  /** One encounter of two bodies; see crates/web/src/pair.rs. */
+  meet(parameters: Float64Array, number: number): Float64Array {
+    return this.call(parameters, () => this.core.meet(number));
+  }
+
+  /** Contacts, ending and √(E'/E) of some encounters. */
+  survey(parameters: Float64Array, first: number, count: number): Float64Array {
+    return this.call(parameters, () => this.core.survey(first, count));
+  }
+
+  /** A step of a gas; `parameters` end with the states of so many particles. See crates/web/src/gas.rs. */
+  cool(parameters: Float64Array, states: number): Float64Array {
+    return this.call(parameters, () => this.core.cool(states));
   }
 
   /** The outline of the body; see crates/web/src/lib.rs. */

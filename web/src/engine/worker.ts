@@ -16,6 +16,12 @@ function work(job: Job): Float64Array | string {
       return engine!.simulate(job.parameters, job.first, job.count);
     case "follow":
       return engine!.follow(job.parameters, job.particle);
+    case "meet":
+      return engine!.meet(job.parameters, job.encounter);
+    case "survey":
+      return engine!.survey(job.parameters, job.first, job.count);
+    case "cool":
+      return engine!.cool(job.parameters, job.states);
     case "digest": {
       const hash = sha256.create();
       for (const column of job.columns) hash.update(new Uint8Array(column.buffer, column.byteOffset, column.byteLength));

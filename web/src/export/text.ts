@@ -2,17 +2,18 @@
 
 import { COLUMNS } from "../engine/layout";
 import { digested, type Run } from "../engine/run";
+import type { Body, Encounter } from "../pair/encounter";
 import { argumentsOf, float } from "../rigid";
 import { bodyOf, isRigid, lawOf, orientationOf, particlesOf, type Setup } from "../setup";
 import type { Kind } from "../table";
 
 const quoted = (text: string) => JSON.stringify(text);
 
-function given({ parameters }: Kind, s: Setup): [string, string][] {
+function ofKind({ parameters }: Kind, s: Setup): [string, string][] {
   return parameters.map(({ name, names }) => [name, names ? quoted(String(s[name])) : float(Number(s[name]))]);
 }
 
-const body = (s: Setup) => (isRigid(s) ? argumentsOf(s) : given(bodyOf(s), s));
+const body = (s: Setup) => (isRigid(s) ? argumentsOf(s) : ofKind(bodyOf(s), s));
 
 function run(s: Setup): [string, string][] {
   return [
@@ -36,7 +37,7 @@ export function toml(s: Setup): string {
   return [
     "# restitution simulate run.toml --out run.nc\n",
     table("body", [["shape", quoted(s.shape)], ...body(s)]),
-    table("law", [["type", quoted(s.law)], ...given(lawOf(s), s)]),
+    table("law", [["type", quoted(s.law)], ...ofKind(lawOf(s), s)]),
     table("run", run(s)),
   ].join("\n");
 }
@@ -51,7 +52,7 @@ export function python(s: Setup): string {
 import restitution as rs
 
 body = rs.${bodyOf(s).name}(${list(body(s), ", ")})
-law = rs.${lawOf(s).name}(${list(given(lawOf(s), s), ", ")})
+law = rs.${lawOf(s).name}(${list(ofKind(lawOf(s), s), ", ")})
 data = rs.simulate(
     body,
     law,
@@ -59,6 +60,40 @@ data = rs.simulate(
 )
 columns = (${names})
 print(hashlib.sha256(b"".join(data[name].values.tobytes() for name in columns)).hexdigest())
+`;
+}
+
+/** The lines of Python that follow the same encounter: as it is drawn, or from its beginning. */
+export function pairPython(s: Setup, number: number, { flights }: Encounter): string {
+  const list = (rows: [string, string][]) => rows.map(([key, value]) => `${key}=${value}`).join(", ");
+  const [drawn, states] = [s.meeting === "drawn", flights[0].bodies];
+  const both = (of: (body: Body) => number[]) => `[[${states.map((state) => `[${of(state).map(float).join(", ")}]`).join(",\n     ")}]]`;
+  const start = `names = ["encounter", "particle", "component"]
+states = xr.Dataset({
+    "position": (names, ${both(({ place }) => place.toArray())}),
+    "velocity": (names, ${both(({ velocity }) => velocity.toArray())}),
+    "angular_velocity": (names, ${both(({ spin }) => spin.toArray())}),
+    "attitude": (names[:2] + ["quaternion"], ${both(({ attitude: { w, x, y, z } }) => [w, x, y, z])}),
+})
+`;
+  const given = drawn
+    ? `    encounters=${number + 1},
+    translational_temperature=temperature,
+    rotational_temperature=${float(s.temperature_ratio)} * temperature,
+    seed=${s.seed},
+`
+    : "    states=states,\n";
+  return `import restitution as rs
+${drawn ? "" : "import xarray as xr\n"}
+body = rs.${bodyOf(s).name}(${list(body(s))})
+law = rs.${lawOf(s).name}(${list(ofKind(lawOf(s), s))})
+${drawn ? `temperature = body.mass * ${float(s.thermal_speed)} ** 2\n` : start}data = rs.pair.encounters(
+    body,
+    body,
+    law,
+${given}    record="contacts",
+)
+print(data.isel(encounter=${drawn ? number : 0}))
 `;
 }
 

@@ -60,7 +60,37 @@ export function write(context: CanvasRenderingContext2D, written: Written, font:
   altimeter(pen, written, font);
 }
 
-function scale(pen: CanvasPen, { left, height, width, perMetre, note }: Written, font: number): void {
+/** Of two bodies in free flight, by their colours: speeds as seen from their centre of mass, spins, and the contacts so far. */
+export interface Key extends Pick<Written, "left" | "width" | "height" | "perMetre" | "note"> {
+  bodies: { speed: number; spin: number }[];
+  contact: [number, number];
+  names: { name: string; hue: "velocity" | "spin" | "impulse"; tip: Place }[];
+}
+
+export function keyOf(context: CanvasRenderingContext2D, key: Key, font: number): void {
+  const colours = theme();
+  const pen = new CanvasPen(context);
+  const [line, small] = [1.45 * font, { size: font, rim: colours.paper }];
+  const narrow = key.width < 37 * font;
+  key.bodies.forEach(({ speed, spin }, k) => {
+    const y = line * ((narrow ? 2 : 1) * k + 0.8);
+    const [right, down] = narrow ? [2.6 * font, y + line] : [9.6 * font, y];
+    pen.ellipse([1.5 * font, y], [0.45 * font, 0.45 * font], 0, colours[k ? "b" : "a"], "none", 0);
+    pen.text("v", [2.6 * font, y + 0.35 * font], { ...small, colour: colours.velocity, bold: true });
+    pen.text(`${short(speed)} m/s`, [3.9 * font, y + 0.35 * font], { ...small, colour: colours.ink });
+    pen.text("ω", [right, down + 0.35 * font], { ...small, colour: colours.spin, bold: true });
+    pen.text(`${short(spin)} rad/s`, [right + 1.3 * font, down + 0.35 * font], { ...small, colour: colours.ink });
+  });
+  const [so, all] = key.contact;
+  const text = all === 0 ? "no contact" : `contact ${so} of ${all}`;
+  pen.text(text, [key.width - 0.8 * font, 1.15 * font], { colour: colours.ink, size: font, anchor: "end", rim: colours.paper });
+  for (const { name, hue, tip } of key.names) {
+    pen.text(name, [tip[0] + 0.4 * font, tip[1]], { colour: colours[hue], size: 1.15 * font, bold: true, rim: colours.paper });
+  }
+  scale(pen, key, font);
+}
+
+function scale(pen: CanvasPen, { left, height, width, perMetre, note }: Pick<Written, "left" | "width" | "height" | "perMetre" | "note">, font: number): void {
   const { ink, paper } = theme();
   const length = nice((0.1 * width) / perMetre);
   const [from, y] = [left + 0.8 * font, height - 0.9 * font];

@@ -1,6 +1,7 @@
 /** The motion of one particle, from the starts of its flights: crates/web/src/path.rs. */
 
 import { Quaternion, Vector3 } from "three";
+import { Timeline } from "./clock";
 
 const COLUMNS = 14;
 /** Of a rigid body. */
@@ -40,12 +41,13 @@ export interface Moment {
 
 const UP = new Vector3(0, 0, 1);
 
-export class Path {
+export class Path extends Timeline {
   readonly flights: Flight[] = [];
   readonly gravity: Vector3;
 
   /** `turn` is that of a rigid body, whose rows have other columns. */
   constructor(rows: Float64Array, gravity: number, incline: number, private readonly turn?: Turn) {
+    super();
     this.gravity = new Vector3(gravity * Math.sin(incline), 0, -gravity * Math.cos(incline));
     for (let i = 0; i < rows.length; i += turn ? FREE : COLUMNS) {
       const at = (k: number) => rows[i + k];
@@ -81,28 +83,6 @@ export class Path {
     }
   }
 
-  /** Time of an impact, counted from 0, or of the last. */
-  impact(number: number): number {
-    return this.flights[Math.min(number + 1, this.flights.length - 1)].start;
-  }
-
-  /** Time at which there is nothing more to show. */
-  get finish(): number {
-    const last = this.flights.length - 1;
-    return this.flights[last].start + this.duration(last);
-  }
-
-  /** Number of the flight under way at a time. */
-  flightAt(time: number): number {
-    let [low, high] = [0, this.flights.length - 1];
-    while (low < high) {
-      const middle = (low + high + 1) >> 1;
-      if (this.flights[middle].start <= time) low = middle;
-      else high = middle - 1;
-    }
-    return low;
-  }
-
   at(time: number): Moment {
     const impacts = this.flightAt(time);
     const flight = this.flights[impacts];
@@ -110,7 +90,7 @@ export class Path {
   }
 
   /** Duration of a flight; the last one has no end, and is shown for as long as it would take to come down again. */
-  duration(k: number): number {
+  override duration(k: number): number {
     const next = this.flights[k + 1];
     return next ? next.start - this.flights[k].start : (2 * Math.max(this.flights[k].velocity.z, 0)) / -this.gravity.z;
   }

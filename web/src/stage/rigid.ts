@@ -20,16 +20,17 @@ interface Ball {
   radius: number;
 }
 
-export function rigidOf(s: Setup, colour: string): Group {
+/** `coarse` as in `solidOf`. */
+export function rigidOf(s: Setup, colour: string, coarse = 1): Group {
   const tones = [new Color(colour), new Color(colour).lerp(new Color("#ffffff"), 0.45), new Color(colour).lerp(new Color("#000000"), 0.35)];
   const { centre } = freeOf(s);
   const { surface, profile } = drawingOf(s);
   if (surface) return faces(surface, centre, tones, s.shape !== "mesh");
-  if (profile) return revolved(profile.map(([z, r]) => [z - centre.z, r]), tones);
-  if (s.shape === "rough-sphere") return rough(s, tones);
-  if (s.shape !== "clump") return octants((normals) => farthestOf(s, normals), tones);
+  if (profile) return revolved(profile.map(([z, r]) => [z - centre.z, r]), tones, coarse);
+  if (s.shape === "rough-sphere") return rough(s, tones, coarse);
+  if (s.shape !== "clump") return octants((normals) => farthestOf(s, normals), tones, coarse);
   const clump = rowsOf(s, "spheres").map(([x, y, z, radius]) => ({ place: new Vector3(x, y, z).sub(centre), radius }));
-  return new Group().add(balls(clump, new SphereGeometry(1, 32, 20), tones));
+  return new Group().add(balls(clump, new SphereGeometry(1, 32 / coarse, 20 / coarse), tones));
 }
 
 /** Each of the balls in the next of the tones. */
@@ -63,11 +64,11 @@ function faces({ points, triangles }: Surface, centre: Vector3, tones: Color[], 
 }
 
 /** A convex surface in octants, of its places with these outward normals. */
-function octants(places: (normals: Vector3[]) => Vector3[], [base, light, dark]: Color[]): Group {
+function octants(places: (normals: Vector3[]) => Vector3[], [base, light, dark]: Color[], coarse: number): Group {
   const group = new Group();
   for (let k = 0; k < 8; k++) {
     const upper = k < 4;
-    const shape = new SphereGeometry(1, 16, 16, (k * Math.PI) / 2, Math.PI / 2, upper ? 0 : Math.PI / 2, Math.PI / 2).rotateX(Math.PI / 2);
+    const shape = new SphereGeometry(1, 16 / coarse, 16 / coarse, (k * Math.PI) / 2, Math.PI / 2, upper ? 0 : Math.PI / 2, Math.PI / 2).rotateX(Math.PI / 2);
     const normal = shape.getAttribute("normal");
     const found = places(Array.from({ length: normal.count }, (_, i) => new Vector3().fromBufferAttribute(normal, i)));
     shape.setAttribute("position", new Float32BufferAttribute(found.flatMap((place) => place.toArray()), 3));
@@ -77,7 +78,7 @@ function octants(places: (normals: Vector3[]) => Vector3[], [base, light, dark]:
 }
 
 /** A solid of revolution, line by line of its profile; the ends are joined to the axis, unless it is closed. */
-function revolved(profile: number[][], [base, light, dark]: Color[]): Group {
+function revolved(profile: number[][], [base, light, dark]: Color[], coarse: number): Group {
   const [[z, r], [end, last]] = [profile[0], profile.at(-1)!];
   const closed = z === end && r === last;
   const outline = closed ? profile : [[z, 0], ...profile, [end, 0]];
@@ -85,7 +86,7 @@ function revolved(profile: number[][], [base, light, dark]: Color[]): Group {
   const group = new Group();
   outline.slice(1).forEach((to, k) => {
     const from = outline[k];
-    if (from[0] !== to[0] || from[1] !== to[1]) group.add(...quarters([from, to], to[1] > from[1] ? below : above, pale));
+    if (from[0] !== to[0] || from[1] !== to[1]) group.add(...quarters([from, to], to[1] > from[1] ? below : above, pale, coarse));
   });
   return group;
 }
@@ -103,7 +104,7 @@ export function noteOf(s: Setup): string {
   return times > 1 ? `asperities drawn ${times} times as large` : "";
 }
 
-function rough(s: Setup, [base, light, dark]: Color[]): Group {
+function rough(s: Setup, [base, light, dark]: Color[], coarse: number): Group {
   const [sphere, ...asperities] = freeOf(s).balls;
   const times = exaggeration(s);
   const large = asperities.map(({ place, radius }) => {
@@ -112,5 +113,5 @@ function rough(s: Setup, [base, light, dark]: Color[]): Group {
   });
   // Small ones have few faces.
   const shape = large.length > 2000 ? new IcosahedronGeometry(1, 0) : new IcosahedronGeometry(1, 2);
-  return new Group().add(octants((normals) => normals.map((normal) => normal.setLength(sphere.radius)), [base, base, base.clone().lerp(dark, 0.5)]), balls(large, shape, [light]));
+  return new Group().add(octants((normals) => normals.map((normal) => normal.setLength(sphere.radius)), [base, base, base.clone().lerp(dark, 0.5)], coarse), balls(large, shape, [light]));
 }

@@ -13,15 +13,11 @@ import {
   LineSegments,
   Mesh,
   MeshBasicMaterial,
-  PerspectiveCamera,
   PlaneGeometry,
-  Scene,
   ShadowMaterial,
   Vector3,
   VSMShadowMap,
-  WebGLRenderer,
 } from "three";
-import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { theme } from "../charts/colours";
 import type { Setup } from "../setup";
 import { nice } from "../statistics";
@@ -32,6 +28,7 @@ import { solidOf } from "./body";
 import { noteOf, rigidOf } from "./rigid";
 import { write, type Arrowhead } from "./overlay";
 import { impulseOf, type Moment, type Path } from "./path";
+import { ANGLE, View } from "./view";
 
 /** Points of the trace in a flight, and flights that it goes back. */
 const TRACE = { each: 40, flights: 6 };
@@ -39,7 +36,6 @@ const TRACE = { each: 40, flights: 6 };
 const CELLS = 60;
 /** Ghosts of the body at its contacts: so many before the last one, and the next. */
 const GHOSTS = 4;
-const ANGLE = 35;
 /** The body fills a third of the height of the picture. */
 const SHARE = 1 / 3;
 /** Distance of the camera in lengths of the body. */
@@ -81,13 +77,8 @@ interface Actor extends Part {
   traced: number;
 }
 
-export class Stage {
-  private readonly scene = new Scene();
+export class Stage extends View {
   private readonly fog = new Fog("#ffffff");
-  private readonly camera = new PerspectiveCamera(ANGLE, 1, 0.1, 2000);
-  private readonly renderer: WebGLRenderer;
-  private readonly overlay = document.createElement("canvas");
-  private readonly controls: OrbitControls;
   private readonly sun = new DirectionalLight("#ffffff", 2.2);
   /** Ground, shadow and lines lie in one another: what is below hides nothing of what is above it. */
   private readonly ground = new Mesh(new PlaneGeometry(2000, 2000), new MeshBasicMaterial({ depthWrite: false }));
@@ -97,24 +88,14 @@ export class Stage {
   /** Distance of the lines on the ground, in R of A. */
   private spacing = 1;
   private actors: Actor[] = [];
-  private stale = true;
   private haunted = false;
 
-  constructor(private readonly host: HTMLElement) {
-    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    // Asking whether a shader is right waits for it.
-    this.renderer.debug.checkShaderErrors = false;
+  constructor(host: HTMLElement) {
+    super(host, DISTANCE);
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = VSMShadowMap;
     this.renderer.setScissorTest(true);
-    this.overlay.className = "overlay";
-    for (const canvas of [this.renderer.domElement, this.overlay]) {
-      canvas.setAttribute("aria-hidden", "true");
-      host.append(canvas);
-    }
-    this.camera.up.set(0, 0, 1);
-    this.camera.position.set(0.12, -1, 0.24).setLength(DISTANCE);
+    this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
     this.sun.position.set(-4, -3, 12);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(256, 256);
@@ -125,20 +106,7 @@ export class Stage {
     this.floor.add(this.ground, this.shade, this.grid);
     this.scene.add(new AmbientLight("#ffffff", 1.3), this.sun, this.sun.target, this.floor);
     this.scene.fog = this.fog;
-    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
-    this.controls.enablePan = false;
-    this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
-    this.controls.minDistance = DISTANCE / 4;
-    this.controls.maxDistance = DISTANCE * 8;
-    this.controls.listenToKeyEvents(host);
-    this.controls.addEventListener("change", () => (this.stale = true));
-    // The wheel and a finger that goes up or down scroll the page; who has chosen the scene comes nearer by the wheel.
-    this.controls.enableZoom = false;
-    this.renderer.domElement.style.touchAction = "pan-y";
-    host.addEventListener("focus", () => (this.controls.enableZoom = true));
-    host.addEventListener("blur", () => (this.controls.enableZoom = false));
     this.restyle();
-    new ResizeObserver(() => this.resize()).observe(host);
   }
 
   /** Puts bodies on the stage, each on its path. */
@@ -171,17 +139,13 @@ export class Stage {
   }
 
   /** Draws the bodies at a time, if something moves or has changed. */
-  draw(time: number, moving: boolean): Moment | undefined {
+  override draw(time: number, moving: boolean): Moment | undefined {
     const lead = this.actors[0]?.path.at(time);
     if (!lead || !(moving || this.stale)) return lead;
     this.controls.update();
     this.stale = false;
     const { clientWidth: width, clientHeight: height } = this.host;
-    const context = this.overlay.getContext("2d")!;
-    const scale = this.overlay.width / Math.max(width, 1);
-    context.setTransform(scale, 0, 0, scale, 0, 0);
-    context.clearRect(0, 0, width, height);
-    const font = 0.8 * parseFloat(getComputedStyle(this.host).fontSize);
+    const { context, font } = this.sheet();
     const each = width / this.actors.length;
     // In lengths of the body: the viewer's own choice.
     const home = this.camera.position.clone();
@@ -204,38 +168,6 @@ export class Stage {
     });
     this.camera.position.copy(home);
     return lead;
-  }
-
-  /** Scene and writing in one canvas, for a file. */
-  compose(canvas: HTMLCanvasElement): void {
-    const { width, height } = this.renderer.domElement;
-    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
-    const context = canvas.getContext("2d")!;
-    context.drawImage(this.renderer.domElement, 0, 0);
-    context.drawImage(this.overlay, 0, 0, width, height);
-  }
-
-  /** Draws for paper, which takes a WebGL canvas as it was before: behind the writing, in the canvas of that. */
-  flatten(time: number): void {
-    this.draw(time, true);
-    const context = this.overlay.getContext("2d")!;
-    context.save();
-    context.resetTransform();
-    context.globalCompositeOperation = "destination-over";
-    context.drawImage(this.renderer.domElement, 0, 0);
-    context.restore();
-    this.stale = true;
-  }
-
-  /** The same in three pixels for each of the page. */
-  large(canvas: HTMLCanvasElement, time: number): void {
-    const ratio = this.renderer.getPixelRatio();
-    for (const each of [3, ratio]) {
-      this.renderer.setPixelRatio(each);
-      this.resize();
-      this.draw(time, true);
-      if (each === 3) this.compose(canvas);
-    }
   }
 
   private actor({ setup, path, of }: Part, unit: number): Actor {
@@ -354,11 +286,6 @@ export class Stage {
     ];
   }
 
-  private onScreen(place: Vector3, left: number, width: number, height: number): [number, number] {
-    const { x, y } = place.clone().project(this.camera);
-    return [left + (width * (x + 1)) / 2, (height * (1 - y)) / 2];
-  }
-
   private trace(actor: Actor, impacts: number, unit: number): void {
     const { path } = actor;
     const points: Vector3[] = [];
@@ -372,15 +299,6 @@ export class Stage {
     actor.trace.geometry.dispose();
     actor.trace.geometry = new BufferGeometry().setFromPoints(points);
     actor.traced = impacts;
-  }
-
-  private resize(): void {
-    const { clientWidth: width, clientHeight: height } = this.host;
-    if (!width || !height) return;
-    this.renderer.setSize(width, height);
-    const scale = this.renderer.getPixelRatio();
-    [this.overlay.width, this.overlay.height] = [Math.round(width * scale), Math.round(height * scale)];
-    this.stale = true;
   }
 }
 

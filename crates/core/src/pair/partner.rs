@@ -123,6 +123,19 @@ impl Partner {
         }
     }
 
+    /// A body after an impulse at a point, both in the axes of space: (11).
+    pub fn struck(&self, state: &PairState, point: Vector, impulse: Vector) -> PairState {
+        let principal = state.attitude * self.axes;
+        let torque = (point - state.position).cross(impulse);
+        let within = principal.inverse().rotate(torque).parts();
+        let [x, y, z] = std::array::from_fn(|i| self.inverse_moments[i] * within[i]);
+        PairState {
+            velocity: impulse.mul_add(self.inverse_mass, state.velocity),
+            spin: state.spin + principal.rotate(Vector::new(x, y, z)),
+            ..*state
+        }
+    }
+
     /// The angular momentum about the centre of mass, in the axes of space.
     pub fn angular_momentum(&self, state: &PairState) -> Vector {
         let principal = state.attitude * self.axes;

@@ -1,0 +1,170 @@
+//! Encounters of two bodies of the kind of a run, under its law and with its seed, in SI units.
+
+use crate::records::here;
+use crate::rigid::{components, quaternion, vector};
+use restitution_core::pair::{
+    ENCOUNTER, Encounters, HIT, Meeting, PairState, PairTable, PairVariable, Partner,
+};
+use restitution_core::{AnyBody, Error, Monitor, Quaternion, Run, Vector};
+use std::ops::Range;
+
+/// How they meet, as `web/src/engine/layout.ts` writes it: 0 for two Maxwellians, 1 for what is given; √(T_tr/m) and T_rot/T_tr; the relative
+/// speed, the impact parameter over the sum of the reaches, and ω of each about the normal of the plane in which the centres approach.
+pub const NUMBERS: usize = 7;
+
+/// The variables of an encounter that the page shows, a number each.
+const SHOWN: [&str; 8] = [
+    "contacts",
+    "ending",
+    "duration",
+    "deflection",
+    "contact_speed",
+    "restitution_centres",
+    "restitution_contact",
+    "restitution_energy",
+];
+
+/// One encounter: the variables of `SHOWN`; the numbers of [`drawn_as`]; the flights, one more
+/// than the contacts, in 31 columns: start time, and of each body position (3), velocity (3), attitude (4: w, x, y, z), ω (3), energy of translation
+/// and of rotation; and the contacts in 12: time, normal (3), point (3), impulse on the first body (3), normal speeds towards each other before and from
+/// each other after.
+pub fn meet(run: &Run<'_>, pairs: &[f64; NUMBERS], number: usize) -> Result<Vec<f64>, Error> {
+    let body = Partner::new("shape", run.body)?;
+    let table = follow(run, &body, pairs, number..number + 1, true)?;
+    let row = &table.encounters[..];
+    let mut made: Vec<f64> = SHOWN.map(|name| column(row, name)[0]).to_vec();
+    made.extend(drawn_as(run, &body));
+    let mut states = [0, 1].map(|i| before(row, i));
+    let mut clock = 0.0;
+    made.extend(flight(&body, clock, &states));
+    for hit in table.hits.chunks(width(HIT)) {
+        let [point, impulse] = [4, 7].map(|at| vector(hit[at..].first_chunk().expect("a vector")));
+        for (state, sign) in states.iter_mut().zip([1.0, -1.0]) {
+            *state = body.struck(&body.later(state, hit[0] - clock), point, impulse * sign);
+        }
+        clock = hit[0];
+        made.extend(flight(&body, clock, &states));
+    }
+    made.extend(&table.hits);
+    Ok(made)
+}
+
+/// The reach of a body, its principal moments (3) and the rotation from its principal axes (4): what the page draws it with.
+pub fn drawn_as(run: &Run<'_>, body: &Partner) -> Vec<f64> {
+    let axes = match run.body {
+        AnyBody::Revolution(_) => Quaternion::IDENTITY,
+        AnyBody::Rigid(rigid) => rigid.axes,
+    };
+    let mut row = vec![body.reach()];
+    row.extend(body.moments());
+    row.extend(quaternion(axes));
+    row
+}
+
+/// Of some encounters the number of contacts, how each ended, and √(E'/E), row by row.
+pub fn survey(
+    run: &Run<'_>,
+    pairs: &[f64; NUMBERS],
+    first: usize,
+    count: usize,
+) -> Result<Vec<f64>, Error> {
+    let body = Partner::new("shape", run.body)?;
+    let table = follow(run, &body, pairs, first..first + count, false)?;
+    let rows = table.encounters.chunks(width(ENCOUNTER));
+    Ok(rows
+        .flat_map(|row| {
+            ["contacts", "ending", "restitution_energy"].map(|name| column(row, name)[0])
+        })
+        .collect())
+}
+
+fn follow(
+    run: &Run<'_>,
+    body: &Partner,
+    &[kind, thermal, ratio, speed, offset, one, two]: &[f64; NUMBERS],
+    numbers: Range<usize>,
+    contacts: bool,
+) -> Result<PairTable, Error> {
+    let temperature = run.body.mass() * (thermal * thermal);
+    let given = kind == 1.0;
+    let encounters = Encounters {
+        bodies: [body; 2],
+        first: numbers.start as u64,
+        count: numbers.len(),
+        meeting: if given {
+            Meeting::Speed(speed)
+        } else {
+            Meeting::Temperatures([temperature; 2])
+        },
+        impact_parameter: given.then_some(offset * 2.0 * body.reach()),
+        rotational: [ratio * temperature; 2],
+        spin: given.then_some([Vector::default(); 2]),
+        seed: run.seed,
+    };
+    let record = |states: Option<&[[PairState; 2]]>, contacts| {
+        encounters.record(&run.law, states, contacts, here(), &Monitor::default())
+    };
+    if !given {
+        return record(None, contacts);
+    }
+    let drawn = record(None, false)?;
+    let rows = drawn.encounters.chunks(width(ENCOUNTER));
+    let states: Vec<_> = rows
+        .map(|row| {
+            let mut states = [0, 1].map(|i| before(row, i));
+            let [a, b] = &states;
+            let normal = (a.position - b.position).cross(a.velocity - b.velocity);
+            for (state, spin) in states.iter_mut().zip([one, two]) {
+                state.spin = normal * (spin / normal.norm());
+            }
+            states
+        })
+        .collect();
+    record(Some(&states), contacts)
+}
+
+fn width(variables: &[PairVariable]) -> usize {
+    variables.iter().map(size).sum()
+}
+
+fn size(&(.., parts, each): &PairVariable) -> usize {
+    parts * (1 + usize::from(each))
+}
+
+/// The numbers of a variable in the row of an encounter.
+fn column<'a>(row: &'a [f64], name: &str) -> &'a [f64] {
+    let ahead = ENCOUNTER.iter().take_while(|variable| variable.0 != name);
+    let (mut start, mut count) = (0, 0);
+    for variable in ahead {
+        start += size(variable);
+        count += 1;
+    }
+    &row[start..][..size(&ENCOUNTER[count])]
+}
+
+/// A body at the beginning.
+fn before(row: &[f64], body: usize) -> PairState {
+    let of = |name| column(row, name).as_chunks().0[body];
+    let &[w, x, y, z] = column(row, "attitude_before")[4 * body..]
+        .first_chunk()
+        .expect("an attitude");
+    PairState {
+        position: vector(&of("position_before")),
+        velocity: vector(&of("velocity_before")),
+        attitude: Quaternion::new(w, x, y, z),
+        spin: vector(&of("angular_velocity_before")),
+    }
+}
+
+fn flight(body: &Partner, start: f64, states: &[PairState; 2]) -> Vec<f64> {
+    let mut row = vec![start];
+    for state in states {
+        row.extend(components(state.position));
+        row.extend(components(state.velocity));
+        row.extend(quaternion(state.attitude));
+        row.extend(components(state.spin));
+        row.push(0.5 * body.mass() * state.velocity.dot(state.velocity));
+        row.push(body.rotational_energy(state.attitude, state.spin));
+    }
+    row
+}
