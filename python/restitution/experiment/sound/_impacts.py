@@ -16,7 +16,7 @@ from restitution._internal.parameters import ParameterError, Problem, TooLargeEr
 from restitution.experiment.flight.times import DOUBLED, DOUBTFUL, GOOD, MISSED, flag_attributes
 from restitution.experiment.sound._choice import Choice, choose
 from restitution.experiment.sound._envelope import Envelope, bands, envelope, rounding
-from restitution.experiment.sound._series import best_series, strongest
+from restitution.experiment.sound._series import LONGEST_FLIGHT, best_series, strongest
 from restitution.experiment.sound._track import Track, followed
 from restitution.experiment.sound.load import clipped_share, load
 
@@ -36,6 +36,9 @@ FIRST_SCORE, FURTHER_SCORE = 7.0, 15.0
 """Scores that the first series and further ones must have."""
 _MEAN = 2.4
 """And the mean for each impact: the best chain through noise that swells reaches 2.1."""
+_SHORT_FLIGHT, _SHORTER = 0.25, 0.7
+"""Longest flights in s down to which series are searched for, each search with this part of the one before:
+one impact of each of several drops may follow one another like those of one, with longer flights."""
 _CLIPPED_THROUGHOUT = 0.5
 """Share of loud samples at the limit that explains why nothing is heard."""
 _FURTHER_MEMBERS = 4
@@ -139,29 +142,34 @@ def _heard_in(samples: Array, own: float, name: str) -> xr.Dataset:
 
 def _tracks(samples: Array, rate: float) -> tuple[int, list[Track], Envelope]:
     """Follow the series in the channel and the band where most impacts are heard."""
-    best: tuple[float, int, list[Track], Envelope] | None = None
+    best: tuple[float, int, list[Track], Envelope, list[Envelope]] | None = None
     for channel in range(samples.shape[1]):
         if not np.ptp(samples[:, channel]) > 0.0:
             continue
         least = rounding(samples[:, channel])
         heard = [envelope(samples[:, channel], rate, band, least) for band in bands(rate)]
         for one in heard:
-            tracks = _series_in(one)
-            worth = sum(float(np.minimum(track.rewards, _SATURATED).sum()) for track in tracks)
-            worth -= _PIECE * max(len(tracks) - 1, 0)
-            if best is None or worth > best[0]:
-                best = (worth, channel, [followed(track, heard) for track in tracks], one)
+            longest = LONGEST_FLIGHT
+            while longest > _SHORT_FLIGHT:
+                tracks = _series_in(one, longest)
+                worth = sum(float(np.minimum(track.rewards, _SATURATED).sum()) for track in tracks)
+                worth -= _PIECE * max(len(tracks) - 1, 0)
+                if best is None or worth > best[0]:
+                    best = (worth, channel, tracks, one, heard)
+                flights = [float(np.diff(track.times).max()) for track in tracks]
+                longest = _SHORTER * min(longest, max(flights, default=longest))
     assert best is not None
-    return best[1], best[2], best[3]
+    _, channel, tracks, one, heard = best
+    return channel, [followed(track, heard) for track in tracks], one
 
 
-def _series_in(one: Envelope) -> list[Track]:
-    """Take series out of the candidates of a band, the best first, until none is left."""
+def _series_in(one: Envelope, longest: float) -> list[Track]:
+    """Take series with flights up to a longest out of the candidates of a band, until none is left."""
     times, rises = one.candidates(CANDIDATE)
     times, rewards = strongest(times, rises / max(one.spread, _LEAST_SPREAD) - _WORTH)
     tracks: list[Track] = []
     while True:
-        found = best_series(times, rewards, one.width / 3.0)
+        found = best_series(times, rewards, one.width / 3.0, longest)
         if found is None or found.score < (FURTHER_SCORE if tracks else FIRST_SCORE):
             return tracks
         members = found.members
@@ -181,6 +189,7 @@ def _of_another_ball(tracks: list[Track]) -> int:
     own, one = np.sort(np.concatenate([track.times for track in tracks])), tracks[0].envelope
     times, rises = one.candidates(CANDIDATE)
     left = np.abs(times[:, None] - own).min(axis=1, initial=np.inf) > 2.0 * one.width
+    left &= np.any([(each.times[0] < times) & (times < each.times[-1]) for each in tracks], axis=0)
     times, rewards = strongest(times[left], rises[left] / max(one.spread, _LEAST_SPREAD) - _WORTH)
     found = best_series(times, rewards, one.width / 3.0)
     if found is None or found.score < FURTHER_SCORE or found.score < _MEAN * found.members.size:

@@ -36,7 +36,9 @@ class Series:
     score: float
 
 
-def best_series(times: Array, rewards: Array, jitter: float) -> Series | None:
+def best_series(
+    times: Array, rewards: Array, jitter: float, longest: float = LONGEST_FLIGHT
+) -> Series | None:
     """Find the chain of candidates with the highest score.
 
     Dynamic programming over pairs of successive impacts: the best chain that ends with the pair (j, k)
@@ -49,6 +51,8 @@ def best_series(times: Array, rewards: Array, jitter: float) -> Series | None:
         Candidates in the order of time, and what each is worth, > 0.
     jitter : float
         Standard error of their times, in s.
+    longest : float
+        Flights last at most so long, in s.
     """
     n = times.size
     if n < 3:
@@ -59,13 +63,13 @@ def best_series(times: Array, rewards: Array, jitter: float) -> Series | None:
     # The flight that ended with the second of a pair: not their distance, where one between was missed.
     ended = times[None, :] - times[:, None]
     for j in range(n):
-        nexts = np.arange(j + 1, np.searchsorted(times, times[j] + LONGEST_FLIGHT, side="right"))
+        nexts = np.arange(j + 1, np.searchsorted(times, times[j] + longest, side="right"))
         nexts = nexts[times[nexts] - times[j] > 4.0 * jitter]
         if not nexts.size:
             continue
         flights = times[nexts] - times[j]
         score[j, nexts] = rewards[j] + rewards[nexts]
-        before = np.arange(np.searchsorted(times, times[j] - LONGEST_FLIGHT), j)
+        before = np.arange(np.searchsorted(times, times[j] - longest), j)
         before = before[np.isfinite(score[before, j])]
         if not before.size:
             continue
