@@ -129,7 +129,7 @@ export class Gas {
     const { course } = this;
     const [translational, rotational] = [course.translational, course.rotational].map((values) => values.at(-1)! / course.translational[0]);
     const { contacts, collisions } = this.now!.looks[1];
-    part("gas-text").textContent = `${short(this.time)} s, ${this.collisions.toFixed(1)} collisions of each particle: T_tr = ${translational.toPrecision(3)}, T_rot = ${rotational.toPrecision(3)} of T_tr at the beginning; T_rot/T_tr = ${(rotational / translational).toPrecision(3)}. Contacts of an encounter: ${(contacts / collisions).toFixed(2)}.`;
+    part("gas-text").textContent = `${short(this.time)} s, ${this.collisions.toFixed(1)} collisions of each particle: T_tr = ${translational.toPrecision(3)} T₀, T_rot = ${rotational.toPrecision(3)} T₀; T_rot/T_tr = ${(rotational / translational).toPrecision(3)}. Contacts of an encounter: ${(contacts / collisions).toFixed(2)}.`;
   }
 
   /** The temperatures so far. */
@@ -141,7 +141,7 @@ export class Gas {
     return {
       title: "Temperatures of translation and rotation against time",
       x: { label: "time (s)", low: 0, high: Math.max(time.at(-1)!, 1e-9) },
-      y: { label: "T / T_tr at the beginning", low, high: 2 * Math.max(...seen, 1), log: true },
+      y: { label: "T / T₀", low, high: 2 * Math.max(...seen, 1), log: true },
       curves: [
         { label: "T_tr", of: "a", kind: "line", x: time, y: share(translational) },
         { label: "T_rot", of: "b", kind: "line", x: time, y: share(rotational) },

@@ -11,8 +11,8 @@ import { solidOf } from "./body";
 import { rigidOf } from "./rigid";
 import { ANGLE, View } from "./view";
 
-const DISTANCE = 1.65 / Math.tan((ANGLE * Math.PI) / 360);
-/** The line of a particle that is as fast as the mean at the beginning, in halves of the box. */
+const DISTANCE = 1.45 / Math.tan((ANGLE * Math.PI) / 360);
+/** The line of a particle that has the thermal speed of the beginning, in halves of the box; a surface that turns with three times that has one as long. */
 const NEEDLE = 0.16;
 const STATE = 10;
 /** Bodies are drawn in few triangles, and without asperities. */
@@ -98,7 +98,7 @@ export class BoxScene extends View {
       placed.compose(place, now.attitude, size);
       for (const { mesh, within } of this.parts) within.forEach((part, i) => mesh.setMatrixAt(k * within.length + i, whole.multiplyMatrices(placed, part)));
       const needle = NEEDLE / setup.thermal_speed;
-      [velocity.multiplyScalar(needle), now.spin.multiplyScalar(needle * grains.reach)].forEach((along, i) => {
+      [velocity.multiplyScalar(needle), now.spin.multiplyScalar((needle * grains.reach) / 3)].forEach((along, i) => {
         const line = i ? turns : lines;
         line.setXYZ(2 * k, place.x, place.y, place.z);
         line.setXYZ(2 * k + 1, place.x + along.x, place.y + along.y, place.z + along.z);

@@ -130,7 +130,7 @@ export class Space extends View {
           ...(velocity.visible ? [{ name: "v", hue: "velocity" as const, tip: tip(velocity.tip) }] : []),
           ...(spin.visible ? [{ name: "ω", hue: "spin" as const, tip: tip(spin.tip) }] : []),
         ]),
-        ...this.marks.slice(0, contacts).map(({ normal }, k) => ({ name: encounter.hits.length > 1 ? `n${k + 1}` : "n", hue: "impulse" as const, tip: tip(normal.tip) })),
+        ...this.marks.slice(Math.max(contacts - 1, 0), contacts).map(({ normal }) => ({ name: "n", hue: "impulse" as const, tip: tip(normal.tip) })),
       ],
     }, font);
     this.camera.position.copy(home);
