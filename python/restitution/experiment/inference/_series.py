@@ -157,11 +157,12 @@ class Series:
         whiten = root @ (np.eye(known.size) - np.outer(slopes, estimator))
         first = float(speed[0])
         if not np.isfinite(first):
-            # The first flight begins with v' = g Δt/2, and the ball fell with v'/ε_n.
-            up = 0.5 * data.attrs["gravity"] * float(time[1] - time[0])
-            if not np.isfinite(up):
-                raise ParameterError(Problem(name, ": the first two times must be known, or the drop height"))
-            first = up / float(form.coefficient(np.array([up]), values)[0])
+            # The first flight that is known, after impact k, begins with v' = g Δt/2, and all k + 1 impacts
+            # before it had about the same ε_n.
+            flights = np.diff(time)
+            place = int(np.flatnonzero(np.isfinite(flights))[0])
+            up = 0.5 * data.attrs["gravity"] * float(flights[place])
+            first = up / float(form.coefficient(np.array([up]), values)[0]) ** (place + 1)
         gravity = float(data.attrs["gravity"])
         contact = float(data.attrs.get("contact_time_uncertainty", 0.0))
         drop = first**2 / (2.0 * gravity)
