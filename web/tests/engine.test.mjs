@@ -370,7 +370,7 @@ test("a link is a set-up: what goes in comes out, and nonsense is named", () => 
   assert.equal(page.toHash(state), "");
   state.a = { ...state.a, law: "coulomb", friction: 0.25, radius: 1e-3, seed: 77 };
   state.b = { ...state.a, separation: 2e-5 };
-  Object.assign(state, { speed: -0.05, range: "fig7", density: "fraction", particle: 12, impact: 3, stop: 4 });
+  Object.assign(state, { speed: -0.05, range: "fig7", density: "fraction", particle: 12, impact: 3, show: "pair", encounter: 9, stop: 4 });
   const { state: read, problems } = page.fromHash(`#${page.toHash(state)}`);
   assert.deepEqual(problems, []);
   assert.deepEqual(read, state);

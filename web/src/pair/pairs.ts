@@ -20,7 +20,7 @@ export const PAIR_KINDS: Record<string, [string, (contacts: number, ending: numb
   every: ["Every one, misses too", () => true],
 };
 /** Encounters that are looked through at a time, and at most. */
-const [BLOCK, MOST] = [500, 20_000];
+const [BLOCK, MOST] = [200, 20_000];
 const ROWS: [string, string][] = [["motion", "velocity"], ["rotation", "spin"], ["· first", "a"], ["· second", "b"], ["all", "ink"]];
 const sum = (values: number[]) => values.reduce((a, b) => a + b);
 
@@ -98,15 +98,16 @@ export class Pairs {
   /** The number of the next encounter of a kind, or of the one before; where there is none, it says so. */
   async find(kind: string, { a, encounter }: State, by: 1 | -1): Promise<number | undefined> {
     const fits = PAIR_KINDS[kind][1];
-    const output = part("pair-found");
-    const parameters = pairNumbers(a);
+    const [output, parameters, asked] = [part("pair-found"), pairNumbers(a), this.asked];
     for (let from = encounter + by, looked = 0; looked < MOST && from >= 0; looked += BLOCK, from += by * BLOCK) {
       const first = by > 0 ? from : Math.max(from - BLOCK + 1, 0);
       const count = by > 0 ? BLOCK : from - first + 1;
       const table = (await this.pool.run({ kind: "survey", parameters, first, count }, undefined, true)) as Float64Array;
       const numbers = Array.from({ length: count }, (_, k) => (by > 0 ? k : count - 1 - k));
       const at = numbers.find((k) => fits(table[3 * k], table[3 * k + 1], table[3 * k + 2]));
-      output.textContent = "";
+      // Another encounter is shown by now.
+      if (asked !== this.asked) return undefined;
+      output.textContent = at === undefined ? `${looked + count} looked at` : "";
       if (at !== undefined) return first + at;
     }
     output.textContent = by > 0 ? `none among the next ${MOST.toLocaleString("en")}` : "none before";

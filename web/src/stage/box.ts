@@ -11,7 +11,7 @@ import { solidOf } from "./body";
 import { rigidOf } from "./rigid";
 import { ANGLE, View } from "./view";
 
-const DISTANCE = 1.45 / Math.tan((ANGLE * Math.PI) / 360);
+const DISTANCE = 1.58 / Math.tan((ANGLE * Math.PI) / 360);
 /** The line of a particle that has the thermal speed of the beginning, in halves of the box; a surface that turns with three times that has one as long. */
 const NEEDLE = 0.16;
 const STATE = 10;
