@@ -245,10 +245,11 @@ except rs.SimulationInterrupted as stop:
     ],
 )
 def test_ctrl_c_in_fine_statistics(bins: tuple[int, int]) -> None:
-    """Grids of 10⁸ sites or so, with impacts in parts of each row or in most sites, add the cost of their pages.
+    """Grids of 10⁸ sites or so, with impacts in parts of each row or in most, add the cost of their pages.
 
-    That is what writing to the pages of such a grid for the first time takes, which is measured at once: it depends
-    on the machine, and on the size of its pages. The rest is as long as in `test_ctrl_c_within_a_second`.
+    That is what writing to the pages of such a grid for the first time takes, which is measured at once: it
+    depends on the machine, and on the size of its pages. The rest is as long as in
+    `test_ctrl_c_within_a_second`.
     """
     [[seconds, touched, kept]] = run(f"""
 body = rs.Dumbbell(radius=3e-3, separation=3e-3)
