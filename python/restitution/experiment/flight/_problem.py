@@ -14,6 +14,7 @@ from restitution._internal.parameters import ParameterError, Problem
 from restitution.experiment.flight._law_fit import LawFit
 from restitution.experiment.flight.chain import COMMON, Chain, Measured, chain
 from restitution.experiment.flight.laws import LawOfSpeed, by_parameters, by_speed
+from restitution.experiment.flight.series import USUAL_BETWEEN
 
 Array = npt.NDArray[np.float64]
 
@@ -67,8 +68,6 @@ def _spread(logarithm: float) -> float:
 _IMPOSSIBLE = 1e300
 _DECIDED = 2.71
 """Twice the logarithm of a ratio of likelihoods that a variance of zero exceeds in 5 of 100 cases."""
-_USUAL_BETWEEN = 3e-3
-"""Half of all plates and hands differ by less in ε: the scale of a half-Cauchy prior (Gelman, 2006)."""
 _AVERAGED = 8.0
 """Drop of the logarithm of the likelihood down to which scatters are averaged over."""
 _STEPS = np.linspace(0.0, 1.0, 13)
@@ -277,7 +276,7 @@ class Misfit:
         information = np.asarray(slopes.T @ slopes, dtype=np.float64)
         value = -0.5 * float(residual @ residual) - float(np.log(np.diag(lower)).sum())
         value -= 0.5 * float(np.linalg.slogdet(information)[1])
-        value -= float(np.log1p((scatter.between / _USUAL_BETWEEN) ** 2))
+        value -= float(np.log1p((scatter.between / USUAL_BETWEEN) ** 2))
         if not step:
             return Restricted(value, np.zeros_like(values), information)
         pull = slopes.T @ residual

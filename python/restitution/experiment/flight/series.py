@@ -10,6 +10,9 @@ from restitution._internal.arrays import check_each
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.drop.recorded import variables
 
+USUAL_BETWEEN = 3e-3
+"""Half of all plates and hands differ by less in ε: the scale of a half-Cauchy prior (Gelman, 2006)."""
+
 
 def series_of(data: Any, *needed: str) -> dict[str, xr.Dataset]:
     """Take a Dataset of `flight.restitution`, or several, by what errors call them.

@@ -15,6 +15,8 @@ _STRAY = 0.02
 """Weight of a wide Gaussian, three times as wide, so that no density is 0."""
 _COMPARED = 4
 """Of the numbers of a series, those whose density this is; the others are for the predictive check."""
+_REACH, _NODES = 6.0, 121
+"""Standard deviations on both sides that nodes of a likelihood reach, and their number."""
 IMPOSSIBLE = -1e4
 """Logarithm of a likelihood that is none."""
 
@@ -69,6 +71,15 @@ class Density:
             np.abs(trend) >= abs(numbers[5]),
         ]
         return np.asarray(np.mean(signs, axis=1))
+
+    def truths(self, numbers: Array, offsets: Array) -> Array:
+        """Return true parameters that are off the likeliest by so many of its scales."""
+        return np.asarray(numbers[0] - self.middle + self.scale * offsets)
+
+    def nodes(self, numbers: Array) -> Array:
+        """Return true parameters, increasing, between which the likelihood is nearly linear."""
+        away = self.root[0, 0] * np.linspace(-_REACH, _REACH, _NODES)
+        return self.truths(numbers, np.sinh(away - self.mean[0]))
 
     def __call__(self, numbers: Array, truths: Array) -> Array:
         """Return ln p of the numbers, were these the true parameters, shape (m,)."""

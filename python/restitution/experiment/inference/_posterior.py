@@ -100,7 +100,8 @@ def posterior(
     ----------
     data : Dataset or iterable of Dataset
         As `restitution.flight.restitution` returns it: one series, or several of the same ball. The first
-        impact must be the first after the release. Air drag is to be accounted for there.
+        impact must be the first after the release. Air drag is to be accounted for there. The normal
+        coefficients of several may differ, as on other plates: inferred is their mean.
     law : Law, Material or float, optional
         Its kind and everything that is not inferred. Inferred is the normal coefficient, or the parameter of
         its material: β of a `Viscoelastic`, the yield speed of a `Plastic`. Its own value there is not used.

@@ -13,6 +13,7 @@ from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import Akima1DInterpolator, RegularGridInterpolator
 
 from restitution._internal.parameters import ParameterError, Problem
+from restitution.experiment.inference._drops import averaged, scatters_between, together, usual_between
 from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._likelihood import Density
 from restitution.experiment.inference._series import Series
@@ -160,7 +161,12 @@ def table(
             densities.append(
                 [Density(one.heard(flight, width, off), middle, one.observed) for one, flight, off in drops]
             )
-    width, narrow = _widths(series, densities, middle)
+    width, narrow = _widths(series, densities)
+    taus, weights = np.zeros(1), np.ones(1)
+    if len(series) > 1:
+        usual = usual_between(series)
+        taus, weights = scatters_between(usual, narrow)
+        width = max(width, usual, float(np.ptp([one.observed[0] for one in series])))
     # Fine where the best balls determine the parameter well, extended to where the worst do.
     steep = np.arcsinh(6.0 * width / narrow)
     grid = middle + narrow * np.sinh(steep * np.linspace(-1.0, 1.0, _GRID))
@@ -170,7 +176,7 @@ def table(
         if number > 0 and each is densities[number - 1]:
             logs[number] = logs[number - 1]
         else:
-            logs[number] = sum(d(one.observed, grid) for d, one in zip(each, series, strict=True))
+            logs[number] = averaged(together(each, series, grid, taus), weights)
     best = densities[int(np.argmax(logs.max(axis=1)))]
     shares = np.array([d.beyond(one.observed) for d, one in zip(best, series, strict=True)])
     signs = np.minimum(1.0, len(shares) * shares.min(axis=0))  # the least of several
@@ -197,8 +203,11 @@ def _finer(values: Array, axis: Array, place: int) -> tuple[Array, Array]:
     return np.asarray(Akima1DInterpolator(axis, values, axis=place)(fine)), fine
 
 
-def _widths(series: Sequence[Series], densities: list[list[Density]], middle: float) -> tuple[float, float]:
-    """Return the largest and the smallest scale of the parameter among balls that the series allow."""
+def _widths(series: Sequence[Series], densities: list[list[Density]]) -> tuple[float, float]:
+    """Return the largest and the smallest scale of the parameter among balls that the series allow.
+
+    Each series may have a parameter of its own.
+    """
     offsets = np.linspace(-3.0, 3.0, 25)
     best, scales = [], []
     for number, each in enumerate(densities):
@@ -206,12 +215,10 @@ def _widths(series: Sequence[Series], densities: list[list[Density]], middle: fl
             continue
         if not all(one.enough for one in each):
             continue
-        scale = min(one.scale for one in each)
+        own = [d(one.observed, d.truths(one.observed, offsets)) for d, one in zip(each, series, strict=True)]
+        best.append(float(np.sum(np.max(own, axis=1))))
         shift = float(np.mean([one.middle for one in each]))
-        truths = middle - shift + scale * offsets
-        total = sum(d(one.observed, truths) for d, one in zip(each, series, strict=True))
-        best.append(float(np.max(total)))
-        scales.append(scale + abs(shift) / 3.0)
+        scales.append(min(one.scale for one in each) + abs(shift) / 3.0)
     if not best:
         text = ": no ball of these shapes bounces as often as this under the law, with its coefficients"
         raise ParameterError(Problem("data", text))
