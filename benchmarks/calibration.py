@@ -3,11 +3,14 @@
 ``python -m benchmarks.calibration OUT [EXPERIMENTS]`` writes ``calibration.png``, ``calibration.md`` and
 ``calibration.csv`` into the folder OUT; 120 experiments take some five minutes on one core. If the posterior
 is right, the rank of the truth among its draws is uniform, and an interval of 90 % covers it in 90 %
-(Talts et al., arXiv:1804.06788).
+(Talts et al., arXiv:1804.06788). ``python -m benchmarks.calibration friction [EXPERIMENTS]`` prints a table
+over the friction of the true ball, which the posterior does not know.
 """
 
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +30,12 @@ DIAMETER, DROP, IMPACTS, ERROR = 6e-3, 0.1, 17, 2e-5
 NORMAL, ELONGATION, SCATTER = (0.85, 0.97), (2e-3, 0.2), (1e-4, 0.02)
 """Of these the truth is drawn: uniform, and uniform in the logarithm."""
 NAMES = ("normal", "elongation", "scatter")
+LAWS: dict[str, Callable[..., rs.laws.Law]] = {
+    "Coulomb, $\\mu = 0$": rs.Frictionless,
+    **{f"Coulomb, $\\mu = {mu:g}$": partial(rs.Coulomb, friction=mu) for mu in (0.02, 0.2, 1.0)},
+    "the paper's, $\\varepsilon_t = 1$": partial(rs.TangentialRestitution, tangential=1.0),
+}
+"""Of true balls, by what the table calls them; the normal coefficient is left open."""
 
 
 @dataclass(frozen=True)
@@ -49,17 +58,21 @@ class Calibration:
     limit: Array
 
 
-def experiment(seed: int) -> tuple[tuple[float, float, float], xr.DataTree]:
-    """Drop a ball of the prior, time it, and infer what it was: ε_n, L/R and scatter, and the posterior."""
+def experiment(
+    seed: int, kind: Callable[..., rs.laws.Law] | None = None
+) -> tuple[tuple[float, float, float], xr.DataTree]:
+    """Drop a ball of the prior, time it, and infer what it was: ε_n, L/R and scatter, and the posterior.
+
+    Without a kind of law contacts are known to be without friction; with one the posterior does not know it.
+    """
     rng = np.random.default_rng(seed)
     while True:
         normal = rng.uniform(*NORMAL)
         elongation = float(np.exp(rng.uniform(*np.log(ELONGATION))))
         scatter = float(np.exp(rng.uniform(*np.log(SCATTER))))
-        law = rs.Frictionless(normal=normal)
         run = rs.simulate(
             rs.from_roundness(DIAMETER, 0.25 * elongation * DIAMETER, form="dumbbell"),
-            rs.Frictionless(normal=rs.Scattered(normal=normal, deviation=scatter)),
+            (kind or rs.Frictionless)(normal=rs.Scattered(normal=normal, deviation=scatter)),
             particles=1,
             impacts=IMPACTS,
             release_height=DROP + DIAMETER / 2.0,
@@ -73,7 +86,7 @@ def experiment(seed: int) -> tuple[tuple[float, float, float], xr.DataTree]:
     data = rs.flight.restitution(times, ERROR, drop_height=DROP)
     found = rs.posterior(
         data,
-        law,
+        rs.Frictionless(normal=normal) if kind is None else None,
         diameter=DIAMETER,
         elongation=ELONGATION,
         scatter=SCATTER,
@@ -84,11 +97,13 @@ def experiment(seed: int) -> tuple[tuple[float, float, float], xr.DataTree]:
     return (normal, elongation, scatter), found
 
 
-def calibrate(experiments: int, first: int = 1) -> Calibration:
+def calibrate(
+    experiments: int, first: int = 1, kind: Callable[..., rs.laws.Law] | None = None
+) -> Calibration:
     """Make experiments with the seeds from `first`."""
     truths, ranks, told, limits = [], [], [], []
     for seed in tqdm(range(first, first + experiments), disable=not sys.stderr.isatty()):
-        truth, found = experiment(seed)
+        truth, found = experiment(seed, kind)
         truths.append(truth)
         drawn = [found["posterior"].to_dataset()[name].values.ravel() for name in NAMES]
         ranks.append([float(np.mean(one < true)) for one, true in zip(drawn, truth, strict=True)])
@@ -158,6 +173,21 @@ def draw(found: Calibration, *, style: Style | None = None) -> Figure:
     return figure
 
 
+def frictions(experiments: int) -> None:
+    """Print how often intervals of 90 % and limits of L/R hold, and how often a shape is claimed wrongly."""
+    print(
+        "| law of the ball | $\\varepsilon_n$ held | L/R held | below its limit | a shape, if L/R < 0.008 |"
+    )
+    print("|---|---|---|---|---|")
+    for name, kind in LAWS.items():
+        found = calibrate(experiments, kind=kind)
+        small = found.truth[:, 1] < 0.008
+        shares = [covered(found.rank[:, 0], 0.9), covered(found.rank[:, 1], 0.9)]
+        shares += [float(np.mean(found.truth[:, 1] < found.limit))]
+        cells = " | ".join(f"{100 * share:.0f} %" for share in shares)
+        print(f"| {name} | {cells} | {found.told[small].sum()} of {small.sum()} |", flush=True)
+
+
 def main(out: Path, experiments: int) -> None:
     """Write figure and table."""
     found = calibrate(experiments)
@@ -172,4 +202,8 @@ def main(out: Path, experiments: int) -> None:
 if __name__ == "__main__":
     if len(sys.argv) not in (2, 3):
         sys.exit("usage: python -m benchmarks.calibration OUT [EXPERIMENTS]")
-    main(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) == 3 else 120)
+    number = int(sys.argv[2]) if len(sys.argv) == 3 else 120
+    if sys.argv[1] == "friction":
+        frictions(number)
+    else:
+        main(Path(sys.argv[1]), number)

@@ -122,7 +122,7 @@ def test_five_drops_of_a_smooth_ball_tell_that_the_material_scatters() -> None:
 
 @pytest.mark.slow
 def test_ten_drops_of_a_dumbbell_tell_its_shape() -> None:
-    tree = inferred([dumbbell(0.05, 10 + i) for i in range(10)], 500)
+    tree = inferred([dumbbell(0.05, 10 + i) for i in range(10)], 2000)
     assert tree.attrs["explained_by"] == "surface"
     assert tree.attrs["verdict"].startswith("The surface is not that of a sphere: either L/R = 0.0")
     assert "for a ball of the form 'dumbbell'" in tree.attrs["verdict"]
@@ -151,12 +151,12 @@ def test_ten_drops_of_a_hollow_dumbbell_tell_its_shape_if_its_wall_is_known(seed
     """J = 0.654 mR² for 0.4 mR²: the wall's posterior covers L/R, that of a full ball is at 0.78 of it."""
     wall = 6e-5  # over R as that of a table-tennis ball
     drops = [dumbbell(0.05, seed + i, wall=wall) for i in range(10)]
-    hollow = inferred(drops, 500, wall=wall, scatter=None, roughness=0.0)
+    hollow = inferred(drops, 2000, wall=wall, scatter=None, roughness=0.0)
     low, high = interval(hollow, "elongation")
     assert low < 0.05 < high < 0.09
     assert hollow.attrs["wall"] == wall
     assert "for a ball of the form 'dumbbell' with a wall of 0.06 mm" in hollow.attrs["verdict"]
-    full = inferred(drops, 500, scatter=None, roughness=0.0)
+    full = inferred(drops, 2000, scatter=None, roughness=0.0)
     ratio = [float(tree["posterior"].to_dataset().elongation.median()) for tree in (full, hollow)]
     assert ratio[0] / ratio[1] == pytest.approx(np.sqrt(0.4 / 0.6535), abs=0.08)
 
