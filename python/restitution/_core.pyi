@@ -240,6 +240,7 @@ def simulate_series(
 
 GAS_WHOLE: tuple[str, ...]
 GAS_KIND: tuple[str, ...]
+GAS_BINS: tuple[int, float]
 
 def cool(
     kinds: Sequence[tuple[Solid | Rigid, int, float, tuple[float, float, float], tuple[bool, bool, bool]]],

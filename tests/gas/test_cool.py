@@ -253,3 +253,52 @@ def state(**changes: Any) -> xr.Dataset:
 def test_states_that_are_none(given: dict[str, Any], text: str) -> None:
     with pytest.raises(ValueError, match=text):
         rs.gas.cool(dumbbell(0.0), ELASTIC, **given)
+
+
+@pytest.mark.parametrize("elongation", [0.0, 1.0])
+def test_distributions(elongation: float) -> None:
+    """At first those of Maxwellians, by their closed form; later their fourth moments are what `a20` and `a02` say."""
+    law = rs.Frictionless(normal=0.6)
+    data = rs.gas.cool(
+        dumbbell(elongation),
+        law,
+        particles=40_000,
+        collisions=20,
+        translational_temperature=1.0,
+        samples=2,
+        distributions=True,
+        seed=3,
+    )
+    for name, axes, moment in [("speed", 3, "a20"), ("spin", 2, "a02")][: 2 if elongation else 1]:
+        x = data[f"relative_{name}"]
+        density, error = data[f"{name}_distribution"], data[f"{name}_distribution_error"]
+        size = 2 * (axes / 2) ** (axes / 2) / math.gamma(axes / 2)
+        maxwell = size * x ** (axes - 1) * np.exp(-axes * x**2 / 2)
+        full = density[0] * 0.05 * 40_000 > 100
+        pulls = ((density[0] - maxwell) / np.sqrt(maxwell / (0.05 * 40_000))).where(full)
+        assert abs(pulls).max() < 4.5
+        assert 0.5 < float((pulls**2).mean()) < 1.7
+        for at in range(3):
+            assert float((density[at] * 0.05).sum()) == pytest.approx(1.0, abs=1e-3)
+            fourth = float((x**4 * density[at] * 0.05).sum())
+            # <x^4> of a bin is above the fourth power of its centre by x²w²/4.
+            fourth += 0.25 * 0.05**2 * float((x**2 * density[at] * 0.05).sum())
+            assert fourth == pytest.approx((axes + 2) / axes * (1 + float(data[moment][at])), rel=2e-3)
+        assert float(error[-1].max()) < 0.05
+    assert np.isnan(data["spin_distribution"]).all() == (elongation == 0.0)
+
+
+def test_distributions_of_a_mixture() -> None:
+    """By species, and left out where they are not asked for."""
+    bodies, law = [dumbbell(0.0), dumbbell(1.0)], rs.Frictionless(normal=0.9)
+    few: dict[str, Any] = {
+        "particles": [200, 400],
+        "collisions": 1,
+        "translational_temperature": 1.0,
+        "samples": 1,
+    }
+    data = rs.gas.cool(bodies, law, distributions=True, **few)
+    assert data["spin_distribution"].dims == ("species", "time", "relative_spin")
+    same = rs.gas.cool(bodies, law, **few)
+    assert "speed_distribution" not in same
+    assert (same["a20"] == data["a20"]).all()

@@ -6,7 +6,7 @@ use crate::laws::Law;
 use crate::{resources, watch};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
-use restitution_core::gas::{GAS_KIND, GAS_WHOLE, Gas, Phase, STATE, Species};
+use restitution_core::gas::{BIN, BINS, GAS_KIND, GAS_WHOLE, Gas, Phase, STATE, Species};
 use restitution_core::pair::Partner;
 
 /// Density, length, statistics and seed of a run.
@@ -19,6 +19,7 @@ struct Course {
     collisions: f64,
     heating: f64,
     keep: bool,
+    distributions: bool,
     samples: usize,
     seed: u64,
 }
@@ -28,7 +29,8 @@ type Counted<'py> = (Dropped<'py>, usize, f64, [f64; 3], [bool; 3]);
 
 type Tables<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray2<f64>>);
 
-/// Follows a gas, from the given states if there are any. Returns rows of `GAS_WHOLE` and, for each kind, `GAS_KIND`, by batch and look, with the states of
+/// Follows a gas, from the given states if there are any. Returns rows of `GAS_WHOLE` and, for each kind, `GAS_KIND` and the counts of
+/// both distributions if they are asked for, by batch and look, with the states of
 /// the particles at the end, and the `KeyboardInterrupt` that cut the run short, if any.
 #[pyfunction]
 #[pyo3(signature = (kinds, law, course, threads, given, progress))]
@@ -75,6 +77,7 @@ fn cool<'py>(
         collisions: course.collisions,
         heating: course.heating,
         keep: course.keep,
+        distributions: course.distributions,
         given: given.as_deref(),
         samples: course.samples,
         seed: course.seed,
@@ -82,8 +85,7 @@ fn cool<'py>(
     let (law, resources) = (law.law(), resources(threads)?);
     let ((rows, states), interrupted) =
         watch::run(py, progress, |monitor| gas.cool(&law, resources, monitor))?;
-    let width = GAS_WHOLE.len() + bodies.len() * GAS_KIND.len();
-    let shape = [course.batches, course.samples + 1, width];
+    let shape = [course.batches, course.samples + 1, gas.width()];
     let states = states.into_flattened().into_pyarray(py);
     let states = states.reshape([states.len()? / STATE, STATE])?;
     Ok(((rows.into_pyarray(py).reshape(shape)?, states), interrupted))
@@ -92,5 +94,6 @@ fn cool<'py>(
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("GAS_WHOLE", GAS_WHOLE.map(|(name, ..)| name))?;
     module.add("GAS_KIND", GAS_KIND.map(|(name, ..)| name))?;
+    module.add("GAS_BINS", (BINS, BIN))?;
     module.add_function(wrap_pyfunction!(cool, module)?)
 }

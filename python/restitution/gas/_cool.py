@@ -67,6 +67,7 @@ def cool(
     heating: float = 0.0,
     state: xr.Dataset | None = None,
     record: Record = "moments",
+    distributions: bool = False,
     phase: Phase = "time",
     samples: int = 50,
     batches: int = 10,
@@ -116,6 +117,8 @@ def cool(
         order, which ``particle_species`` numbers from 0. To continue a run give another seed.
     record : {"moments", "state"}
         With "state" also velocity, angular velocity and attitude of every particle at the end.
+    distributions : bool
+        Count the distributions of velocity and rotation at each of the `samples`, too.
     phase : {"time", "uniform"}
         Bodies turn between encounters for the time that passes, or so far that the phase of their rotation is
         uniform, as in the limit of low density.
@@ -138,7 +141,10 @@ def cool(
         but for that of a body of revolution without friction; NaN for spheres without friction), in J;
         ``axis_temperature`` by ``axis``, about each principal axis; ``a20`` = 4<E_tr²>/15T_tr² - 1, ``a02`` =
         4<E_rot²>/f(f + 2)T_rot² - 1 and ``a11`` = <E_tr E_rot>/<E_tr><E_rot> - 1; ``cos2_velocity_spin`` and
-        ``cos2_velocity_axis``, 1/3 where directions are independent, the axis being z of the body. Over
+        ``cos2_velocity_axis``, 1/3 where directions are independent, the axis being z of the body. With
+        `distributions` ``speed_distribution`` over ``relative_speed``, the density of v/<v²>^(1/2), and
+        ``spin_distribution`` over ``relative_spin``, that of (E_rot/<E_rot>)^(1/2), at the centres of bins
+        up to 6; a Maxwellian has 2(f/2)^(f/2)/Γ(f/2) x^(f - 1) exp(-fx²/2), f = 3 for the first. Over
         ``time`` alone, since the beginning: ``collisions`` and ``contacts`` of a particle, ``attempts``
         (pairs that came within reach) and ``created_energy`` a particle, in J. Each has a standard error
         ``..._error``. Attributes have the parameters, the share of collisions that created energy and of
@@ -192,6 +198,7 @@ def cool(
             "heating", heating, "a finite number >= 0 (W)", lambda p: 0.0 <= p < math.inf, unit="W"
         ),
         "keep": record == "state",
+        "distributions": bool(distributions),
         "collisions": real("collisions", collisions, "a number in (0, 10⁹]", lambda x: 0.0 < x <= 1e9),
         "samples": whole("samples", samples, 1, 10**6),
         "seed": whole("seed", seed, 0, 2**64 - 1),
@@ -336,7 +343,7 @@ _COUNTS = {
 
 
 def _dataset(kinds: Sequence[_Kind], table: FloatArray, total: int) -> xr.Dataset:
-    batches, whole_width = len(table), len(_core.GAS_WHOLE)
+    batches = len(table)
     counts = {name: table[..., k] for k, name in enumerate(_core.GAS_WHOLE)}
     each = total / batches
     variables: dict[str, Any] = {}
@@ -350,17 +357,27 @@ def _dataset(kinds: Sequence[_Kind], table: FloatArray, total: int) -> xr.Datase
     for name, (text, unit) in _COUNTS.items():
         particles = 1.0 if name == "created_energy" else 2.0  # to which each belongs
         put(name, counts[name] * (particles / each), ("time",), text, unit)
-    parts = []
-    for number, kind in enumerate(kinds):
-        start = whole_width + number * len(_core.GAS_KIND)
-        columns = table[..., start : start + len(_core.GAS_KIND)]
-        parts.append(_of_kind(kind, dict(zip(_core.GAS_KIND, np.moveaxis(columns, -1, 0), strict=True))))
+    parts, counted = [], []
+    own = np.split(table[..., len(_core.GAS_WHOLE) :], len(kinds), axis=-1)
+    for kind, columns in zip(kinds, own, strict=True):
+        means = columns[..., : len(_core.GAS_KIND)]
+        parts.append(_of_kind(kind, dict(zip(_core.GAS_KIND, np.moveaxis(means, -1, 0), strict=True))))
+        counted.append(_densities(kind, columns[..., len(_core.GAS_KIND) :], batches))
     for name, (text, unit) in _MEANS.items():
         values = np.stack([part[name] for part in parts], axis=1)
         dims = ("species", "time", "axis") if name == "axis_temperature" else ("species", "time")
         put(name, values, dims, text, unit)
+    coordinates: dict[str, Any] = {}
+    if counted[0].size:
+        bins, width = _core.GAS_BINS
+        for place, (name, (text, of)) in enumerate(_DENSITIES.items()):
+            values = np.stack([each[:, :, place] for each in counted], axis=1)
+            dimension = f"relative_{name}"
+            put(f"{name}_distribution", values, ("species", "time", dimension), f"density of {of}", "1")
+            about = {"long_name": f"{of}, {text}", "units": "1"}
+            coordinates[dimension] = (dimension, width * (np.arange(bins) + 0.5), about)
     time = counts["time"].mean(axis=0)
-    coordinates = {
+    coordinates |= {
         "time": ("time", time, {"long_name": "time", "units": "s"}),
         "axis": ("axis", ["first", "second", "third"], {"long_name": "principal axis"}),
     }
@@ -374,6 +391,22 @@ def _dataset(kinds: Sequence[_Kind], table: FloatArray, total: int) -> xr.Datase
         "beyond_majorant": int(last["beyond"]),
     }
     return data
+
+
+_DENSITIES = {
+    "speed": ("speed over its root mean square", "v/<v²>^(1/2)"),
+    "spin": ("root of the energy of rotation over its mean", "(E_rot/<E_rot>)^(1/2)"),
+}
+
+
+def _densities(kind: _Kind, counts: FloatArray, batches: int) -> FloatArray:
+    """Return densities of speed and rotation, shape (batch, time, 2, bin); NaN where nothing turns."""
+    bins, width = _core.GAS_BINS
+    each = kind.particles // batches
+    found = counts.reshape(*counts.shape[:2], -1, bins) / (each * width)
+    if not any(kind.turned):
+        found[:, :, 1:] = math.nan
+    return found
 
 
 def _of_kind(kind: _Kind, means: dict[str, FloatArray]) -> dict[str, FloatArray]:

@@ -12,7 +12,7 @@
 
 mod moments;
 
-pub use moments::{GAS_KIND, GAS_WHOLE};
+pub use moments::{BIN, BINS, GAS_KIND, GAS_WHOLE};
 
 use crate::contact::Between;
 use crate::law::Law;
@@ -24,7 +24,7 @@ use crate::random::{of_gas, of_impact};
 use crate::simd::Level;
 use crate::threads::{Monitor, Resources};
 use crate::{Error, memory};
-use moments::{SpeciesSums, Whole};
+use moments::{Distributions, SpeciesSums, Whole};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
@@ -91,6 +91,8 @@ pub struct Gas<'a> {
     pub given: Option<&'a [[f64; STATE]]>,
     /// Whether the states at the end are kept.
     pub keep: bool,
+    /// Whether distributions are counted at each look.
+    pub distributions: bool,
     /// Looks at the gas after the first.
     pub samples: usize,
     /// The seed.
@@ -106,7 +108,13 @@ struct Turning {
 }
 
 impl Gas<'_> {
-    /// Follows all batches. Returns [`GAS_WHOLE`] and, for each kind, [`GAS_KIND`], of every look at each batch, and if they are kept
+    /// Numbers of a look: [`GAS_WHOLE`], and of each kind [`GAS_KIND`] and, if they are asked for, the counts of v and of the rotation in [`BINS`] bins.
+    pub fn width(&self) -> usize {
+        let counted = if self.distributions { 2 * BINS } else { 0 };
+        GAS_WHOLE.len() + self.kinds.len() * (GAS_KIND.len() + counted)
+    }
+
+    /// Follows all batches. Returns [`Self::width`] numbers of every look at each batch, and if they are kept
     /// the states of all particles at the end, in the order of `given`; all zero after a run that was cancelled.
     ///
     /// # Errors
@@ -119,7 +127,7 @@ impl Gas<'_> {
     ) -> Result<(Vec<f64>, Vec<[f64; STATE]>), Error> {
         self.check()?;
         let next = AtomicUsize::new(0);
-        let size = (self.samples + 1) * (GAS_WHOLE.len() + self.kinds.len() * GAS_KIND.len());
+        let size = (self.samples + 1) * self.width();
         let each = self.each();
         let kept = if self.keep { each * self.batches } else { 0 };
         let rows = memory::zeros("looks at a gas", size * self.batches)?;
@@ -487,7 +495,12 @@ impl<'a> Batch<'a> {
                 self.turnings[i] = Turning::new(&state, self.clock);
                 sums.add(kind, &state);
             }
-            rows.extend(sums.row((end - start) as f64));
+            let count = end - start;
+            rows.extend(sums.row(count as f64));
+            if self.gas.distributions {
+                let own = |i: usize| self.free(start + i, Vector::default());
+                rows.extend(Distributions::new(kind, count, own).row());
+            }
             start = end;
         }
     }

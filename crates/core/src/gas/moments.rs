@@ -57,6 +57,11 @@ pub const GAS_KIND: [(&str, &str, &str); 12] = [
     ("momentum_z", "m s-1", "mean velocity along z"),
 ];
 
+/// Bins of a distribution, and the width of one.
+pub const BINS: usize = 120;
+/// See [`BINS`].
+pub const BIN: f64 = 0.05;
+
 /// Counts since the beginning.
 #[derive(Debug, Default)]
 pub struct Whole {
@@ -92,6 +97,19 @@ impl Whole {
 pub struct SpeciesSums([f64; GAS_KIND.len()]);
 
 impl SpeciesSums {
+    /// The energy of rotation about the axes that contacts turn.
+    fn turning(kind: &Species<'_>, state: &FreeBody) -> f64 {
+        let (moments, own) = (kind.body.moments(), state.spin.parts());
+        let energy = |i: usize| {
+            if kind.turned[i] {
+                0.5 * moments[i] * own[i] * own[i]
+            } else {
+                0.0
+            }
+        };
+        energy(0) + energy(1) + energy(2)
+    }
+
     /// Adds a body.
     #[inline(always)]
     pub fn add(&mut self, kind: &Species<'_>, state: &FreeBody) {
@@ -100,8 +118,7 @@ impl SpeciesSums {
         let moments = body.moments();
         let energy = |i: usize| 0.5 * moments[i] * own[i] * own[i];
         let [x, y, z] = [energy(0), energy(1), energy(2)];
-        let part = |i: usize, energy| if kind.turned[i] { energy } else { 0.0 };
-        let turning = part(0, x) + part(1, y) + part(2, z);
+        let turning = Self::turning(kind, state);
         let square = velocity.dot(velocity);
         let cosine = |other: Vector| {
             let size = square * other.dot(other);
@@ -136,5 +153,38 @@ impl SpeciesSums {
     /// [`GAS_KIND`], the means over so many bodies.
     pub fn row(&self, count: f64) -> [f64; GAS_KIND.len()] {
         self.0.map(|sum| sum / count)
+    }
+}
+
+/// The bodies of a kind in bins of v over its root mean square, and of (E_rot/⟨E_rot⟩)^(1/2), E_rot about the axes that contacts turn.
+pub struct Distributions([[f64; BINS]; 2]);
+
+impl Distributions {
+    /// Those of some bodies, each of which is asked for twice.
+    pub fn new(kind: &Species<'_>, count: usize, state: impl Fn(usize) -> FreeBody) -> Self {
+        let squares = |i: usize| {
+            let state = state(i);
+            let velocity = state.velocity;
+            [velocity.dot(velocity), SpeciesSums::turning(kind, &state)]
+        };
+        let mut sums = [0.0; 2];
+        for [v, energy] in (0..count).map(squares) {
+            sums = [sums[0] + v, sums[1] + energy];
+        }
+        let mut bins = [[0.0; BINS]; 2];
+        for both in (0..count).map(squares) {
+            for ((square, sum), bins) in both.into_iter().zip(sums).zip(&mut bins) {
+                let place = (square * count as f64 / sum).sqrt() / BIN;
+                if let Some(bin) = bins.get_mut(place as usize) {
+                    *bin += 1.0;
+                }
+            }
+        }
+        Self(bins)
+    }
+
+    /// The counts.
+    pub fn row(&self) -> &[f64] {
+        self.0.as_flattened()
     }
 }
