@@ -79,7 +79,7 @@ pub struct Gas<'a> {
     pub kinds: Vec<Species<'a>>,
     /// Particles per volume.
     pub density: f64,
-    /// Turning between encounters.
+    /// ParticleRotation between encounters.
     pub phase: Phase,
     /// Gases that do not know of each other, over which the particles are spread.
     pub batches: usize,
@@ -101,7 +101,7 @@ pub struct Gas<'a> {
 
 /// The rotation of a particle: attitude of the principal axes and ω in them, and the time up to which it has turned.
 #[derive(Debug, Clone, Copy)]
-struct Turning {
+struct ParticleRotation {
     attitude: Quaternion,
     spin: Vector,
     time: f64,
@@ -216,7 +216,7 @@ struct Batch<'a> {
     number: usize,
     /// By themselves: most candidates are refused, for which nothing else is asked.
     velocities: Vec<Vector>,
-    turnings: Vec<Turning>,
+    turnings: Vec<ParticleRotation>,
     /// The time up to which each has been heated, if they are.
     heated: Vec<f64>,
     /// The number behind the last particle of each kind.
@@ -245,7 +245,7 @@ impl<'a> Batch<'a> {
                 for state in own {
                     let free = FreeBody::new(body, &parted(state));
                     velocities.push(free.velocity);
-                    turnings.push(Turning::new(&free, 0.0));
+                    turnings.push(ParticleRotation::new(&free, 0.0));
                 }
                 ends.push(velocities.len());
                 continue;
@@ -257,7 +257,7 @@ impl<'a> Batch<'a> {
                 let [x, y, z] = draws.normals();
                 let thermal = (kind.translational * body.inverse_mass).sqrt();
                 velocities.push(Vector::new(x, y, z) * thermal);
-                turnings.push(Turning {
+                turnings.push(ParticleRotation {
                     attitude: attitude * body.axes,
                     spin: draws.spin(body, kind.rotational),
                     time: 0.0,
@@ -394,7 +394,7 @@ impl<'a> Batch<'a> {
                 }
             };
             state.turn(body, passed);
-            self.turnings[i] = Turning::new(state, self.clock);
+            self.turnings[i] = ParticleRotation::new(state, self.clock);
         }
         // The number of the encounter, for materials whose coefficient scatters.
         let number = (self.number as u64) << 48 | self.drawn;
@@ -432,14 +432,14 @@ impl<'a> Batch<'a> {
         }
         for (i, state) in pair.into_iter().zip(&outcome.states) {
             self.velocities[i] = state.velocity;
-            self.turnings[i] = Turning::new(state, self.clock);
+            self.turnings[i] = ParticleRotation::new(state, self.clock);
         }
         Ok(())
     }
 
     #[inline(always)]
     fn free(&self, particle: usize, position: Vector) -> FreeBody {
-        let Turning { attitude, spin, .. } = self.turnings[particle];
+        let ParticleRotation { attitude, spin, .. } = self.turnings[particle];
         FreeBody {
             position,
             velocity: self.velocities[particle],
@@ -492,7 +492,7 @@ impl<'a> Batch<'a> {
             for i in start..end {
                 let mut state = self.free(i, Vector::default());
                 state.turn(kind.body, self.clock - self.turnings[i].time);
-                self.turnings[i] = Turning::new(&state, self.clock);
+                self.turnings[i] = ParticleRotation::new(&state, self.clock);
                 sums.add(kind, &state);
             }
             let count = end - start;
@@ -506,7 +506,7 @@ impl<'a> Batch<'a> {
     }
 }
 
-impl Turning {
+impl ParticleRotation {
     #[inline(always)]
     fn new(state: &FreeBody, time: f64) -> Self {
         Self {
@@ -551,7 +551,7 @@ impl WithSimd for FollowedGas<'_, '_, '_> {
 }
 
 /// Takes the mean velocity off, and scales velocities and the parts of ω to the energies of the temperatures.
-fn settle(velocities: &mut [Vector], turnings: &mut [Turning], kind: &Species<'_>) {
+fn settle(velocities: &mut [Vector], turnings: &mut [ParticleRotation], kind: &Species<'_>) {
     let count = velocities.len() as f64;
     let body = kind.body;
     let sum = velocities.iter().fold(Vector::default(), |sum, &v| sum + v);

@@ -10,7 +10,7 @@ use crate::simd::elementary::sincos;
 
 /// The rotation of a body during a flight.
 pub(crate) struct Turn {
-    way: Way,
+    way: TurnWay,
     /// The largest velocity and acceleration of a point, per distance from the centre of mass.
     pub bounds: [f64; 2],
 }
@@ -19,7 +19,7 @@ pub(crate) struct Turn {
     clippy::large_enum_variant,
     reason = "two live at a time, on the stack"
 )]
-enum Way {
+enum TurnWay {
     /// All points are on an axis of this number: the part of it along **Λ**, that across and **Λ** × **e**/|Λ|, the rate.
     Axis(usize, [Vector; 3], f64),
     Any(Rotation),
@@ -54,7 +54,7 @@ impl Turn {
         let Some(axis) = axis else {
             let bounds = top.bounds(spin);
             return Self {
-                way: Way::Any(Rotation::new(*top, attitude, spin)),
+                way: TurnWay::Any(Rotation::new(*top, attitude, spin)),
                 bounds: [bounds.fastest, bounds.whole],
             };
         };
@@ -65,7 +65,7 @@ impl Turn {
         if rate == 0.0 {
             let none = Vector::default();
             return Self {
-                way: Way::Axis(axis, [e, none, none], 0.0),
+                way: TurnWay::Axis(axis, [e, none, none], 0.0),
                 bounds: [0.0; 2],
             };
         }
@@ -75,7 +75,7 @@ impl Turn {
         let along = about * about.dot(e);
         let speed = rate * third.norm();
         Self {
-            way: Way::Axis(axis, [along, second, third], rate),
+            way: TurnWay::Axis(axis, [along, second, third], rate),
             bounds: [speed, rate * speed],
         }
     }
@@ -84,7 +84,7 @@ impl Turn {
     #[inline(always)]
     pub fn at(&mut self, time: f64) -> BodyPose {
         match &mut self.way {
-            Way::Axis(axis, [along, second, third], rate) => {
+            TurnWay::Axis(axis, [along, second, third], rate) => {
                 let (sine, cosine) = sincos(*rate * time);
                 let level = third.mul_add(sine, *second * cosine);
                 let change = third.mul_add(cosine, *second * -sine) * *rate;
@@ -96,7 +96,7 @@ impl Turn {
                     motion: [*along + level, change, bend],
                 }
             }
-            Way::Any(rotation) => {
+            TurnWay::Any(rotation) => {
                 let (attitude, spin) = rotation.at(time);
                 BodyPose::new(attitude, spin)
             }
@@ -107,8 +107,8 @@ impl Turn {
     #[inline(always)]
     pub fn rotated(&mut self, time: f64) -> Option<(Quaternion, Vector)> {
         match &mut self.way {
-            Way::Axis(..) => None,
-            Way::Any(rotation) => Some(rotation.at(time)),
+            TurnWay::Axis(..) => None,
+            TurnWay::Any(rotation) => Some(rotation.at(time)),
         }
     }
 }
