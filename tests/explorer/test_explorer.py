@@ -211,8 +211,9 @@ def test_the_page_is_served_to_this_machine(monkeypatch: pytest.MonkeyPatch) -> 
     with urllib.request.urlopen(address, timeout=10) as answer:
         assert answer.read().decode() == "<title>π</title>"
         assert answer.headers["Content-Type"] == "text/html; charset=utf-8"
-    with pytest.raises(urllib.error.HTTPError, match="404"):
+    with pytest.raises(urllib.error.HTTPError, match="404") as refused:
         urllib.request.urlopen(f"{address}other", timeout=10)
+    refused.value.close()
     with pytest.raises(ValueError, match="port = -1"):
         serve(port=-1)
 

@@ -257,7 +257,7 @@ def test_states_that_are_none(given: dict[str, Any], text: str) -> None:
 
 @pytest.mark.parametrize("elongation", [0.0, 1.0])
 def test_distributions(elongation: float) -> None:
-    """At first those of Maxwellians, by their closed form; later their fourth moments are what `a20` and `a02` say."""
+    """At first those of Maxwellians, by their closed form; fourth moments are those of `a20` and `a02`."""
     law = rs.Frictionless(normal=0.6)
     data = rs.gas.cool(
         dumbbell(elongation),
