@@ -41,6 +41,7 @@ pub fn cool(run: &Run<'_>, start: &[f64; NUMBERS], states: &[f64]) -> Result<Vec
         heating: 0.0,
         given: (!given.is_empty()).then_some(given),
         keep: true,
+        distributions: false,
         samples: 1,
         seed: run.seed + step as u64,
     };
