@@ -191,7 +191,7 @@ import json, numpy as np
 ${page.python(setup).split("\n").filter((line) => /^(import restitution|body|law) /.test(line)).join("\n")}
 count, T, side = ${setup.grains}, body.mass * ${setup.thermal_speed} ** 2, ${page.sideOf(setup)} * ${reach}
 turned, given, found = turned_axes(body, law), None, []
-course = dict(number_density=count / (side * side * side), uniform=False, batches=1, collisions=0.5, heating=0.0, keep=True, samples=1)
+course = dict(number_density=count / (side * side * side), uniform=False, batches=1, collisions=0.5, heating=0.0, keep=True, distributions=False, samples=1)
 for step in range(3):
     kind = (body.compiled, count, T, (${setup.temperature_ratio} * T,) * 3, turned)
     (rows, given), _ = _core.cool([kind], law.compiled, course | {"seed": ${setup.seed} + step}, 1, given, None)
