@@ -401,15 +401,14 @@ impl<'a> Batch<'a> {
         let seed = gas.seed;
         let between = &mut self.between[..bodies[0].pieces.len() * bodies[1].pieces.len()];
         between.fill(Between::default());
-        let outcome = Following {
+        let outcome = Level::run_scalar(Following {
             bodies,
             law,
             states,
             chance: &|contact| of_impact(seed, number, contact),
             hit: &mut |_: &_| {},
             between,
-        }
-        .follow();
+        });
         let outcome = outcome.map_err(|trouble| failed(law, trouble, (seed, number), 0))?;
         self.whole.attempts += 1.0;
         self.whole.steps += outcome.steps as f64;

@@ -124,7 +124,7 @@ pub fn narrowest(bodies: [&Partner; 2], states: &[PairState; 2]) -> f64 {
     search.narrowest(&mut flight(bodies, &states))
 }
 
-/// An encounter; it has no packs.
+/// An encounter; it has no packs. It is one function for all who follow encounters: inlined, it would be compiled for each of them.
 pub(crate) struct Following<'a, 'b> {
     pub bodies: [&'a Partner; 2],
     pub law: &'a Law<'b>,
@@ -248,7 +248,7 @@ impl Outcome<FreeBody> {
 
 impl Following<'_, '_> {
     #[inline(always)]
-    pub fn follow(mut self) -> Result<Outcome<FreeBody>, Trouble> {
+    fn follow(mut self) -> Result<Outcome<FreeBody>, Trouble> {
         let bodies = self.bodies;
         let reach = bodies[0].reach + bodies[1].reach;
         let search = PairSearch {

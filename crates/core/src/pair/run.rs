@@ -432,15 +432,14 @@ impl<T, F: Fn(&Encountered, &[Hit], &mut T)> WithSimd for EncounterBlock<'_, '_,
             }
             hits.clear();
             self.between.fill(Between::default());
-            let outcome = Following {
+            let outcome = Level::run_scalar(Following {
                 bodies,
                 law: self.law,
                 states: FreeBody::both(bodies, &before),
                 chance: &|contact| of_impact(seed, number, contact),
                 hit: &mut |hit: &Hit| hits.push(*hit),
                 between: &mut *self.between,
-            }
-            .follow();
+            });
             let outcome =
                 outcome.map_err(|trouble| failed(self.law, trouble, (seed, number), hits.len()))?;
             let outcome = outcome.given(bodies);
