@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
+from reference.sonine import sonine
 from reference.unit import dumbbell
 from restitution.gas import theory
 
@@ -61,7 +62,7 @@ def test_spheres_cool_by_haffs_law() -> None:
     data = rs.gas.cool(
         dumbbell(0.0), law, particles=40_000, collisions=40, translational_temperature=1.0, batches=10
     )
-    a2 = 16 * (1 - normal) * (1 - 2 * normal**2) / (81 - 17 * normal + 30 * normal**2 * (1 - normal))
+    a2 = sonine(normal)
     tau = theory.haff_time(dumbbell(0.0), law, translational_temperature=1.0) / (1 + 3 * a2 / 16)
     half = len(data["time"]) // 2
     expected = (1 + data["time"] / tau) ** -2

@@ -14,6 +14,7 @@ import pytest
 from scipy import optimize
 
 import restitution as rs
+from reference.sonine import sonine
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "gas_of_spheres.py"
 TIMES = np.linspace(0.0, 30.0, 31)
@@ -35,12 +36,6 @@ def replicas(
     """Independent gases of 4000 particles."""
     rule = example.along(epsilon)
     return [example.cool(rule, theta, collisions, seed, 4000) for seed in range(number)]
-
-
-def sonine(epsilon: float) -> float:
-    """a2 of the homogeneous cooling state (van Noije and Ernst 1998, d = 3)."""
-    e = epsilon
-    return 16.0 * (1.0 - e) * (1.0 - 2.0 * e**2) / (81.0 - 17.0 * e + 30.0 * e**2 * (1.0 - e))
 
 
 def haff(time: Any, epsilon: float) -> Any:

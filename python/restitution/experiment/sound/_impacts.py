@@ -149,9 +149,11 @@ def _tracks(samples: Array, rate: float) -> tuple[int, list[Track], Envelope]:
         least = rounding(samples[:, channel])
         heard = [envelope(samples[:, channel], rate, band, least) for band in bands(rate)]
         for one in heard:
+            times, rises = one.candidates(CANDIDATE)
+            candidates = strongest(times, _rewards(one, rises))
             longest = LONGEST_FLIGHT
             while longest > _SHORT_FLIGHT:
-                tracks = _series_in(one, longest)
+                tracks = _series_in(one, *candidates, longest)
                 worth = sum(float(np.minimum(track.rewards, _SATURATED).sum()) for track in tracks)
                 worth -= _PIECE * max(len(tracks) - 1, 0)
                 if best is None or worth > best[0]:
@@ -163,10 +165,13 @@ def _tracks(samples: Array, rate: float) -> tuple[int, list[Track], Envelope]:
     return channel, [followed(track, heard) for track in tracks], one
 
 
-def _series_in(one: Envelope, longest: float) -> list[Track]:
+def _rewards(one: Envelope, rises: Array) -> Array:
+    """Return what candidates are worth, by how much louder they are than before."""
+    return np.asarray(rises / max(one.spread, _LEAST_SPREAD) - _WORTH)
+
+
+def _series_in(one: Envelope, times: Array, rewards: Array, longest: float) -> list[Track]:
     """Take series with flights up to a longest out of the candidates of a band, until none is left."""
-    times, rises = one.candidates(CANDIDATE)
-    times, rewards = strongest(times, rises / max(one.spread, _LEAST_SPREAD) - _WORTH)
     tracks: list[Track] = []
     while True:
         found = best_series(times, rewards, one.width / 3.0, longest)
@@ -190,7 +195,7 @@ def _of_another_ball(tracks: list[Track]) -> int:
     times, rises = one.candidates(CANDIDATE)
     left = np.abs(times[:, None] - own).min(axis=1, initial=np.inf) > 2.0 * one.width
     left &= np.any([(each.times[0] < times) & (times < each.times[-1]) for each in tracks], axis=0)
-    times, rewards = strongest(times[left], rises[left] / max(one.spread, _LEAST_SPREAD) - _WORTH)
+    times, rewards = strongest(times[left], _rewards(one, rises[left]))
     found = best_series(times, rewards, one.width / 3.0)
     if found is None or found.score < FURTHER_SCORE or found.score < _MEAN * found.members.size:
         return 0
