@@ -11,17 +11,17 @@ import { BODIES } from "./table";
 import { Clock } from "./stage/clock";
 import { Path } from "./stage/path";
 import { Stage } from "./stage/stage";
+import { eachFrame, viewIn } from "./stage/view";
 
 export class Player {
   readonly clock = new Clock();
-  stage: Stage | undefined;
+  readonly stage = viewIn(part("stage"), Stage);
   private paths: Path[] = [];
   private runs: Run[] = [];
   private particle = 0;
   private shown = NaN;
   /** The impact that is being approached; until it comes, it is the one to look at. */
   private awaited = 0;
-  private last = performance.now();
   private readonly energies = new Energies(part("energies"));
   private asked = 0;
   /** A film that is being made: where each picture goes, and what to do at its end. */
@@ -29,17 +29,7 @@ export class Player {
 
   /** `moved` hears of every impact that is passed, with its number; `stopped` when the play starts or ends. */
   constructor(private readonly moved: (impact: number) => void, private readonly stopped: () => void) {
-    try {
-      this.stage = new Stage(part("stage"));
-    } catch {
-      part("stage").textContent = "This browser shows no three-dimensional graphics (WebGL 2). All else works.";
-    }
-    const draw = (now: number) => {
-      this.draw(Math.min((now - this.last) / 1000, 0.1));
-      this.last = now;
-      requestAnimationFrame(draw);
-    };
-    requestAnimationFrame(draw);
+    eachFrame((lasted) => this.draw(lasted));
   }
 
   /** Shows a particle of the runs, shortly before an impact, at which it holds, or from its release; as an orbit it goes on, and leaves ghosts. */

@@ -46,7 +46,7 @@ pub fn cool(run: &Run<'_>, start: &[f64; NUMBERS], states: &[f64]) -> Result<Vec
         seed: run.seed + step as u64,
     };
     let (rows, last) = gas.cool(&run.law, here(), &Monitor::default())?;
-    let mut made = drawn_as(run, &body);
+    let mut made = drawn_as(&body);
     for row in rows.chunks(GAS_WHOLE.len() + GAS_KIND.len()) {
         let (whole, kind) = row.split_at(GAS_WHOLE.len());
         let mean = |name| kind[GAS_KIND.iter().position(|x| x.0 == name).expect("a name")];

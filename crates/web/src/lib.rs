@@ -64,11 +64,6 @@ fn of_run_before<const N: usize>(
     keep(Parameters::read(run).and_then(|parameters| work(&parameters.run()?, behind)))
 }
 
-/// The same for encounters.
-fn of_pairs(work: impl FnOnce(&Run<'_>, &[f64; pair::NUMBERS]) -> Result<Vec<f64>, Error>) -> f64 {
-    of_run_before(&given(), work)
-}
-
 /// Address of the place for `count` numbers: `parameters::COUNT` of them, and behind these a body of any shape.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
@@ -94,21 +89,23 @@ pub extern "C" fn follow(particle: usize) -> f64 {
     of_run(|parameters| path::follow(&parameters.run()?, particle))
 }
 
-/// Follows one encounter of two such bodies; behind the parameters are the numbers of `pair::Pairs`. The table is that of `pair::meet`.
+/// Follows one encounter of two such bodies; behind the parameters are `pair::NUMBERS` numbers. The table is that of `pair::meet`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn meet(number: usize) -> f64 {
-    of_pairs(|run, pairs| pair::meet(run, pairs, number))
+    of_run_before(&given(), |run, pairs| pair::meet(run, pairs, number))
 }
 
 /// Follows `count` of them from number `first` on; the table is that of `pair::survey`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn survey(first: usize, count: usize) -> f64 {
-    of_pairs(|run, pairs| pair::survey(run, pairs, first, count))
+    of_run_before(&given(), |run, pairs| {
+        pair::survey(run, pairs, first, count)
+    })
 }
 
-/// Follows a gas of such bodies; behind the parameters are the numbers of `gas::Start`, and behind these the states of as many particles as it
+/// Follows a gas of such bodies; behind the parameters are `gas::NUMBERS` numbers, and behind these the states of as many particles as it
 /// has, or of none. The table is that of `gas::cool`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]

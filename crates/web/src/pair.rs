@@ -1,11 +1,11 @@
 //! Encounters of two bodies of the kind of a run, under its law and with its seed, in SI units.
 
 use crate::records::here;
-use crate::rigid::{components, quaternion, vector};
+use crate::rigid::vector;
 use restitution_core::pair::{
     ENCOUNTER, Encounters, HIT, Meeting, PairState, PairTable, PairVariable, Partner,
 };
-use restitution_core::{AnyBody, Error, Monitor, Quaternion, Run, Vector};
+use restitution_core::{Error, Monitor, Quaternion, Run, Vector};
 use std::ops::Range;
 
 /// How they meet, as `web/src/engine/layout.ts` writes it: 0 for two Maxwellians, 1 for what is given; √(T_tr/m) and T_rot/T_tr; the relative
@@ -33,7 +33,7 @@ pub fn meet(run: &Run<'_>, pairs: &[f64; NUMBERS], number: usize) -> Result<Vec<
     let table = follow(run, &body, pairs, number..number + 1, true)?;
     let row = &table.encounters[..];
     let mut made: Vec<f64> = SHOWN.map(|name| column(row, name)[0]).to_vec();
-    made.extend(drawn_as(run, &body));
+    made.extend(drawn_as(&body));
     let mut states = [0, 1].map(|i| before(row, i));
     let mut clock = 0.0;
     made.extend(flight(&body, clock, &states));
@@ -50,14 +50,10 @@ pub fn meet(run: &Run<'_>, pairs: &[f64; NUMBERS], number: usize) -> Result<Vec<
 }
 
 /// The reach of a body, its principal moments (3) and the rotation from its principal axes (4): what the page draws it with.
-pub fn drawn_as(run: &Run<'_>, body: &Partner) -> Vec<f64> {
-    let axes = match run.body {
-        AnyBody::Revolution(_) => Quaternion::IDENTITY,
-        AnyBody::Rigid(rigid) => rigid.axes,
-    };
+pub fn drawn_as(body: &Partner) -> Vec<f64> {
     let mut row = vec![body.reach()];
     row.extend(body.moments());
-    row.extend(quaternion(axes));
+    row.extend(body.axes().parts());
     row
 }
 
@@ -159,11 +155,11 @@ fn before(row: &[f64], body: usize) -> PairState {
 fn flight(body: &Partner, start: f64, states: &[PairState; 2]) -> Vec<f64> {
     let mut row = vec![start];
     for state in states {
-        row.extend(components(state.position));
-        row.extend(components(state.velocity));
-        row.extend(quaternion(state.attitude));
-        row.extend(components(state.spin));
-        row.push(0.5 * body.mass() * state.velocity.dot(state.velocity));
+        row.extend(state.position.parts());
+        row.extend(state.velocity.parts());
+        row.extend(state.attitude.parts());
+        row.extend(state.spin.parts());
+        row.push(body.translational_energy(state.velocity));
         row.push(body.rotational_energy(state.attitude, state.spin));
     }
     row

@@ -1,7 +1,7 @@
 //! The states at the start of each flight of one particle, from which the page draws the motion in closed form.
 
 use crate::records::alone;
-use crate::rigid::{components, quaternion, vector};
+use crate::rigid::vector;
 use restitution_core::{
     AnyBody, Columns, Error, Height, Quaternion, Records, Rigid, Run, Solid, Vector, elementary,
 };
@@ -115,7 +115,7 @@ fn revolving(solid: &Solid, start: &Start, axis: Vector) -> Vec<f64> {
     let mut row = vec![start.time, start.place.z];
     row.extend(
         [start.velocity, axis, turning]
-            .map(components)
+            .map(Vector::parts)
             .as_flattened(),
     );
     row.extend([(spin - turning).dot(axis), rotation, start.part]);
@@ -132,10 +132,14 @@ fn rigid(body: &Rigid, start: &Start, attitude: Quaternion) -> Vec<f64> {
         part => attitude.rotate(body.nearest(part - 1, up, turning)),
     };
     let mut row = vec![start.time];
-    row.extend([start.place, start.velocity].map(components).as_flattened());
-    row.extend(quaternion(attitude));
-    row.extend(components(start.spin));
+    row.extend(
+        [start.place, start.velocity]
+            .map(Vector::parts)
+            .as_flattened(),
+    );
+    row.extend(attitude.parts());
+    row.extend(start.spin.parts());
     row.extend([rotation, start.part]);
-    row.extend(components(arm));
+    row.extend(arm.parts());
     row
 }

@@ -72,7 +72,7 @@ pub fn drawing(numbers: &[f64]) -> Result<Vec<f64>, Error> {
     Ok(match (kind.make)(&arguments(kind.parameters, &mut rest))? {
         Form::Faces(points, triangles) | Form::Mesh(points, triangles) => {
             let mut row = vec![3.0 * points.len() as f64];
-            row.extend(points.into_iter().flat_map(components));
+            row.extend(points.into_iter().flat_map(Vector::parts));
             row.extend(triangles.into_flattened().into_iter().map(|i| i as f64));
             row
         }
@@ -89,11 +89,11 @@ pub fn drawing(numbers: &[f64]) -> Result<Vec<f64>, Error> {
 /// each centre and radius, in the order of their numbers.
 pub fn outline(body: &Rigid) -> Result<Vec<f64>, Error> {
     let mut row = body.top.moments().to_vec();
-    row.extend(quaternion(body.axes));
-    row.extend(components(body.inertia.centre));
+    row.extend(body.axes.parts());
+    row.extend(body.inertia.centre.parts());
     row.push(body.unit);
     for RigidBall { centre, radius } in body.balls()? {
-        row.extend(components(centre));
+        row.extend(centre.parts());
         row.push(radius);
     }
     Ok(row)
@@ -107,7 +107,7 @@ pub fn farthest(body: &Rigid, directions: &[f64]) -> Result<Vec<f64>, Error> {
         let places = (0..parts).map(|k| body.nearest(k, direction * -1.0, Vector::default()));
         let along = |place: &Vector| place.dot(direction);
         let farthest = places.max_by(|a, b| along(a).total_cmp(&along(b)));
-        row.extend(components(farthest.unwrap_or_default()));
+        row.extend(farthest.unwrap_or_default().parts());
     }
     Ok(row)
 }
@@ -123,25 +123,12 @@ pub fn turned(given: &[f64; 15]) -> Vec<f64> {
     let spin = Vector::new(along, across, up);
     let (attitude, spin) = top.turned(Quaternion::new(w, x, y, z) * axes, spin, time);
     let attitude = attitude * axes.inverse();
-    quaternion(attitude)
-        .into_iter()
-        .chain(components(spin))
-        .collect()
-}
-
-/// w, x, y and z.
-pub fn quaternion(given: Quaternion) -> [f64; 4] {
-    [given.w, given.x, given.y, given.z]
+    attitude.parts().into_iter().chain(spin.parts()).collect()
 }
 
 /// The vector with these x, y and z.
 pub fn vector(&[x, y, z]: &[f64; 3]) -> Vector {
     Vector::new(x, y, z)
-}
-
-/// x, y and z.
-pub fn components(of: Vector) -> [f64; 3] {
-    [of.x, of.y, of.z]
 }
 
 #[cfg(test)]

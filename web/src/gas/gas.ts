@@ -8,6 +8,7 @@ import { part } from "../page";
 import type { Setup } from "../setup";
 import { BoxScene } from "../stage/box";
 import { short } from "../stage/overlay";
+import { eachFrame, viewIn } from "../stage/view";
 import { stepOf, type Step } from "./step";
 
 /** Collisions of a particle in a step, and after which the gas is not followed any more. */
@@ -17,7 +18,7 @@ const MOST = 100;
 const DECADES = 1;
 
 export class Gas {
-  scene: BoxScene | undefined;
+  readonly scene = viewIn(part("gas-stage"), BoxScene);
   /** Collisions of a particle in a second of the viewer. */
   pace = 1;
   playing = false;
@@ -30,23 +31,12 @@ export class Gas {
   private number = 0;
   /** Time since the last step, and how long it lasts. */
   private since = 0;
-  private last = performance.now();
   private time = 0;
   private collisions = 0;
   private readonly course: { time: number[]; translational: number[]; rotational: number[] } = { time: [], translational: [], rotational: [] };
 
   constructor(private readonly pool: Pool, private readonly changed: () => void, private readonly failed: (error: Error) => void) {
-    try {
-      this.scene = new BoxScene(part("gas-stage"));
-    } catch {
-      part("gas-stage").textContent = "This browser shows no three-dimensional graphics (WebGL 2). All else works.";
-    }
-    const draw = (now: number) => {
-      this.draw(Math.min((now - this.last) / 1000, 0.1));
-      this.last = now;
-      requestAnimationFrame(draw);
-    };
-    requestAnimationFrame(draw);
+    eachFrame((lasted) => this.draw(lasted));
   }
 
   /** A gas from its beginning. */

@@ -4,7 +4,8 @@ import { turnOf } from "../outline";
 import type { Turn } from "../stage/path";
 
 /** Columns before the two looks at a gas, of a look, and of a particle: crates/web/src/gas.rs. */
-const [ROTOR, LOOK, STATE] = [8, 5, 10];
+const [ROTOR, LOOK] = [8, 5];
+export const STATE = 10;
 
 /** A step of a gas; temperatures in J. */
 export interface Step {

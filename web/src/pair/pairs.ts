@@ -9,6 +9,7 @@ import { part } from "../page";
 import { Clock } from "../stage/clock";
 import { Space } from "../stage/space";
 import { short } from "../stage/overlay";
+import { eachFrame, viewIn } from "../stage/view";
 import { Encounter, ENDINGS, type Two } from "./encounter";
 
 /** Encounters to look for; one is its number of contacts, how it ended, and √(E'/E). */
@@ -32,26 +33,15 @@ function energiesOf(bodies: Two): number[] {
 
 export class Pairs {
   readonly clock = new Clock();
-  space: Space | undefined;
+  readonly space = viewIn(part("pair-stage"), Space);
   private encounter: Encounter | undefined;
   private readonly bars = new Bars(part("pair-energies"), ROWS);
   private asked = 0;
   private told = NaN;
-  private last = performance.now();
 
   /** `changed` hears when the play starts or ends. */
   constructor(private readonly pool: Pool, private readonly changed: () => void) {
-    try {
-      this.space = new Space(part("pair-stage"));
-    } catch {
-      part("pair-stage").textContent = "This browser shows no three-dimensional graphics (WebGL 2). All else works.";
-    }
-    const draw = (now: number) => {
-      this.draw(Math.min((now - this.last) / 1000, 0.1));
-      this.last = now;
-      requestAnimationFrame(draw);
-    };
-    requestAnimationFrame(draw);
+    eachFrame((lasted) => this.draw(lasted));
   }
 
   /** Shows the encounter of a state, from its beginning, or held after its contacts. Throws where the core refuses it. */

@@ -1,25 +1,23 @@
 /** The scene of a gas: its particles in a box. Velocities, spins and attitudes are those of the gas, places are drawn only. Half of the box is 1. */
 
 import {
-  AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, Color, DirectionalLight, EdgesGeometry, Group, InstancedMesh, LineBasicMaterial, LineSegments,
+  BoxGeometry, BufferAttribute, BufferGeometry, Color, EdgesGeometry, InstancedMesh, LineBasicMaterial, LineSegments,
   Matrix4, type Mesh, Quaternion, Vector3,
 } from "three";
 import { theme } from "../charts/colours";
-import type { Step } from "../gas/step";
+import { STATE, type Step } from "../gas/step";
 import { isRigid, type Setup, sideOf } from "../setup";
 import { solidOf } from "./body";
 import { rigidOf } from "./rigid";
-import { ANGLE, View } from "./view";
+import { ANGLE, FreeView } from "./view";
 
 const DISTANCE = 1.58 / Math.tan((ANGLE * Math.PI) / 360);
 /** The line of a particle that has the thermal speed of the beginning, in halves of the box; a surface that turns with three times that has one as long. */
 const NEEDLE = 0.16;
-const STATE = 10;
 /** Bodies are drawn in few triangles, and without asperities. */
 const [COARSE, MOST_BALLS] = [4, 50];
 
-export class BoxScene extends View {
-  private readonly world = new Group();
+export class BoxScene extends FreeView {
   private grains: Step | undefined;
   private setup: Setup | undefined;
   /** Where each particle is at the beginning of a step. */
@@ -32,9 +30,6 @@ export class BoxScene extends View {
 
   constructor(host: HTMLElement) {
     super(host, DISTANCE);
-    const sun = new DirectionalLight("#ffffff", 2.2);
-    sun.position.set(-4, -6, 10);
-    this.scene.add(new AmbientLight("#ffffff", 1.3), sun, this.world);
   }
 
   /** A gas at its beginning. */
@@ -107,10 +102,7 @@ export class BoxScene extends View {
     for (const { mesh } of this.parts) mesh.instanceMatrix.needsUpdate = true;
     for (const line of [lines, turns]) line.needsUpdate = true;
     const home = this.camera.position.clone();
-    this.camera.aspect = width / height;
-    this.camera.position.multiplyScalar(Math.max(1, 1 / this.camera.aspect));
-    this.camera.updateProjectionMatrix();
-    this.renderer.render(this.scene, this.camera);
+    this.render(width / height);
     this.camera.position.copy(home);
   }
 

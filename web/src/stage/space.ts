@@ -1,6 +1,6 @@
 /** The scene of an encounter: two bodies without a plane, seen from their centre of mass. Lengths in the reach of a body. */
 
-import { AmbientLight, BufferGeometry, DirectionalLight, Group, Line, LineBasicMaterial, Matrix4, Mesh, MeshBasicMaterial, SphereGeometry, Vector3 } from "three";
+import { BufferGeometry, type Group, Line, LineBasicMaterial, Matrix4, Mesh, MeshBasicMaterial, SphereGeometry, Vector3 } from "three";
 import { theme } from "../charts/colours";
 import type { Encounter } from "../pair/encounter";
 import { isRigid, type Setup } from "../setup";
@@ -8,7 +8,7 @@ import { Arrow } from "./arrow";
 import { solidOf } from "./body";
 import { keyOf } from "./overlay";
 import { rigidOf } from "./rigid";
-import { ANGLE, View } from "./view";
+import { ANGLE, FreeView } from "./view";
 
 /** What is to be seen, from the centre of mass: both bodies as they come and go. */
 const AROUND = 2.15;
@@ -23,18 +23,14 @@ interface Actor {
   spin: Arrow;
 }
 
-export class Space extends View {
-  /** Turned so that the first body comes from the left, above the second, in the plane of the picture. */
-  private readonly world = new Group();
+/** The world is turned so that the first body comes from the left, above the second, in the plane of the picture. */
+export class Space extends FreeView {
   private shown: { encounter: Encounter; setup: Setup } | undefined;
   private actors: Actor[] = [];
   private marks: { point: Mesh; normal: Arrow }[] = [];
 
   constructor(host: HTMLElement) {
     super(host, DISTANCE);
-    const sun = new DirectionalLight("#ffffff", 2.2);
-    sun.position.set(-4, -6, 10);
-    this.scene.add(new AmbientLight("#ffffff", 1.3), sun, this.world);
     this.restyle();
   }
 
@@ -107,13 +103,7 @@ export class Space extends View {
       normal.visible = k < contacts;
     });
     const home = this.camera.position.clone();
-    const aspect = width / height;
-    this.camera.position.multiplyScalar(Math.max(1, 1 / aspect));
-    this.camera.aspect = aspect;
-    this.camera.updateProjectionMatrix();
-    this.camera.updateMatrixWorld();
-    this.world.updateMatrixWorld();
-    this.renderer.render(this.scene, this.camera);
+    this.render(width / height);
     const { context, font } = this.sheet();
     const tip = (place: Vector3) => this.onScreen(this.world.localToWorld(place.clone()), 0, width, height);
     const perMetre = height / (2 * Math.tan((ANGLE * Math.PI) / 360) * this.camera.position.length() * reach);

@@ -1,10 +1,31 @@
 /** A scene in three dimensions in its place on the page, with writing over it, and a camera that people turn. */
 
-import { PerspectiveCamera, Scene, type Vector3, WebGLRenderer } from "three";
+import { AmbientLight, DirectionalLight, Group, PerspectiveCamera, Scene, type Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 /** Of the view upwards, in degrees. */
 export const ANGLE = 35;
+
+/** A scene in its place, or a word there where the browser has none. */
+export function viewIn<V extends View>(host: HTMLElement, Kind: new (host: HTMLElement) => V): V | undefined {
+  try {
+    return new Kind(host);
+  } catch {
+    host.textContent = "This browser shows no three-dimensional graphics (WebGL 2). All else works.";
+    return undefined;
+  }
+}
+
+/** Draws again and again; hears of the time since it did so last, in s, at most a tenth. */
+export function eachFrame(draw: (lasted: number) => void): void {
+  let last = performance.now();
+  const frame = (now: number) => {
+    draw(Math.min((now - last) / 1000, 0.1));
+    last = now;
+    requestAnimationFrame(frame);
+  };
+  requestAnimationFrame(frame);
+}
 
 export abstract class View {
   protected readonly scene = new Scene();
@@ -99,5 +120,25 @@ export abstract class View {
     const scale = this.renderer.getPixelRatio();
     [this.overlay.width, this.overlay.height] = [Math.round(width * scale), Math.round(height * scale)];
     this.stale = true;
+  }
+}
+
+/** A scene without a ground, lit from the left and above. */
+export abstract class FreeView extends View {
+  protected readonly world = new Group();
+
+  constructor(host: HTMLElement, distance: number) {
+    super(host, distance);
+    const sun = new DirectionalLight("#ffffff", 2.2);
+    sun.position.set(-4, -6, 10);
+    this.scene.add(new AmbientLight("#ffffff", 1.3), sun, this.world);
+  }
+
+  /** Draws the scene in a picture of this width over height; of a narrow one the camera goes back, where it stays. */
+  protected render(aspect: number): void {
+    this.camera.position.multiplyScalar(Math.max(1, 1 / aspect));
+    this.camera.aspect = aspect;
+    this.camera.updateProjectionMatrix();
+    this.renderer.render(this.scene, this.camera);
   }
 }

@@ -193,11 +193,8 @@ impl Bouncing<'_> {
         let compliance =
             Compliance::of_body(1.0, &Symmetric::turned(inverse, attitude), arm_in_space);
         let at_contact = velocity + attitude.rotate(spin.cross(arm)); // (7)
-        let answer = match chance {
-            Some(chance) => self.law.answer_drawn(&compliance, at_contact, chance),
-            None => self.law.answer(&compliance, at_contact),
-        }
-        .map_err(NoImpact::Fault)?;
+        let answer = self.law.answer_drawn(&compliance, at_contact, chance);
+        let answer = answer.map_err(NoImpact::Fault)?;
         if answer.impulse.z.is_nan() {
             return Err(NoImpact::Unconverged);
         }

@@ -79,7 +79,7 @@ pub struct Gas<'a> {
     pub kinds: Vec<Species<'a>>,
     /// Particles per volume.
     pub density: f64,
-    /// ParticleRotation between encounters.
+    /// The rotation between encounters.
     pub phase: Phase,
     /// Gases that do not know of each other, over which the particles are spread.
     pub batches: usize,
@@ -216,7 +216,7 @@ struct Batch<'a> {
     number: usize,
     /// By themselves: most candidates are refused, for which nothing else is asked.
     velocities: Vec<Vector>,
-    turnings: Vec<ParticleRotation>,
+    rotations: Vec<ParticleRotation>,
     /// The time up to which each has been heated, if they are.
     heated: Vec<f64>,
     /// The number behind the last particle of each kind.
@@ -233,7 +233,7 @@ impl<'a> Batch<'a> {
     fn new(gas: &'a Gas<'a>, number: usize) -> Result<Self, Error> {
         let count = gas.each();
         let mut velocities = memory::empty("velocities of a gas", count)?;
-        let mut turnings = memory::empty("rotations of a gas", count)?;
+        let mut rotations = memory::empty("rotations of a gas", count)?;
         let heated = if gas.heating > 0.0 { count } else { 0 };
         let mut ends = Vec::new();
         for (order, kind) in gas.kinds.iter().enumerate() {
@@ -245,7 +245,7 @@ impl<'a> Batch<'a> {
                 for state in own {
                     let free = FreeBody::new(body, &parted(state));
                     velocities.push(free.velocity);
-                    turnings.push(ParticleRotation::new(&free, 0.0));
+                    rotations.push(ParticleRotation::new(&free, 0.0));
                 }
                 ends.push(velocities.len());
                 continue;
@@ -257,13 +257,13 @@ impl<'a> Batch<'a> {
                 let [x, y, z] = draws.normals();
                 let thermal = (kind.translational * body.inverse_mass).sqrt();
                 velocities.push(Vector::new(x, y, z) * thermal);
-                turnings.push(ParticleRotation {
+                rotations.push(ParticleRotation {
                     attitude: attitude * body.axes,
                     spin: draws.spin(body, kind.rotational),
                     time: 0.0,
                 });
             }
-            settle(&mut velocities[start..], &mut turnings[start..], kind);
+            settle(&mut velocities[start..], &mut rotations[start..], kind);
             ends.push(velocities.len());
         }
         let largest = gas.kinds.iter().map(|kind| kind.body.pieces.len()).max();
@@ -272,7 +272,7 @@ impl<'a> Batch<'a> {
             gas,
             number,
             velocities,
-            turnings,
+            rotations,
             heated: memory::zeros("times of heating", heated)?,
             ends,
             clock: 0.0,
@@ -383,7 +383,7 @@ impl<'a> Batch<'a> {
         ];
         for ((i, body), state) in pair.into_iter().zip(bodies).zip(&mut states) {
             let passed = match gas.phase {
-                Phase::Time => self.clock - self.turnings[i].time,
+                Phase::Time => self.clock - self.rotations[i].time,
                 Phase::Uniform => {
                     let spin = state.spin.norm();
                     if spin > 0.0 {
@@ -394,7 +394,7 @@ impl<'a> Batch<'a> {
                 }
             };
             state.turn(body, passed);
-            self.turnings[i] = ParticleRotation::new(state, self.clock);
+            self.rotations[i] = ParticleRotation::new(state, self.clock);
         }
         // The number of the encounter, for materials whose coefficient scatters.
         let number = (self.number as u64) << 48 | self.drawn;
@@ -431,14 +431,14 @@ impl<'a> Batch<'a> {
         }
         for (i, state) in pair.into_iter().zip(&outcome.states) {
             self.velocities[i] = state.velocity;
-            self.turnings[i] = ParticleRotation::new(state, self.clock);
+            self.rotations[i] = ParticleRotation::new(state, self.clock);
         }
         Ok(())
     }
 
     #[inline(always)]
     fn free(&self, particle: usize, position: Vector) -> FreeBody {
-        let ParticleRotation { attitude, spin, .. } = self.turnings[particle];
+        let ParticleRotation { attitude, spin, .. } = self.rotations[particle];
         FreeBody {
             position,
             velocity: self.velocities[particle],
@@ -490,8 +490,8 @@ impl<'a> Batch<'a> {
             let mut sums = SpeciesSums::default();
             for i in start..end {
                 let mut state = self.free(i, Vector::default());
-                state.turn(kind.body, self.clock - self.turnings[i].time);
-                self.turnings[i] = ParticleRotation::new(&state, self.clock);
+                state.turn(kind.body, self.clock - self.rotations[i].time);
+                self.rotations[i] = ParticleRotation::new(&state, self.clock);
                 sums.add(kind, &state);
             }
             let count = end - start;
@@ -529,8 +529,8 @@ fn parted(&[vx, vy, vz, a, b, c, w, x, y, z]: &[f64; STATE]) -> PairState {
 /// The numbers of the state of a particle.
 fn joined(state: PairState) -> [f64; STATE] {
     let ([vx, vy, vz], [a, b, c]) = (state.velocity.parts(), state.spin.parts());
-    let q = state.attitude;
-    [vx, vy, vz, a, b, c, q.w, q.x, q.y, q.z]
+    let [w, x, y, z] = state.attitude.parts();
+    [vx, vy, vz, a, b, c, w, x, y, z]
 }
 
 /// A gas that is followed; one encounter has no packs.
@@ -550,7 +550,7 @@ impl WithSimd for FollowedGas<'_, '_, '_> {
 }
 
 /// Takes the mean velocity off, and scales velocities and the parts of ω to the energies of the temperatures.
-fn settle(velocities: &mut [Vector], turnings: &mut [ParticleRotation], kind: &Species<'_>) {
+fn settle(velocities: &mut [Vector], rotations: &mut [ParticleRotation], kind: &Species<'_>) {
     let count = velocities.len() as f64;
     let body = kind.body;
     let sum = velocities.iter().fold(Vector::default(), |sum, &v| sum + v);
@@ -561,7 +561,7 @@ fn settle(velocities: &mut [Vector], turnings: &mut [ParticleRotation], kind: &S
         square += v.dot(*v);
     }
     let mut turning = [0.0; 3];
-    for p in turnings.iter() {
+    for p in rotations.iter() {
         for (sum, part) in turning.iter_mut().zip(p.spin.parts()) {
             *sum += part * part;
         }
@@ -579,7 +579,7 @@ fn settle(velocities: &mut [Vector], turnings: &mut [ParticleRotation], kind: &S
     for v in velocities {
         *v = *v * scale;
     }
-    for p in turnings {
+    for p in rotations {
         let [x, y, z] = p.spin.parts();
         p.spin = Vector::new(x * scales[0], y * scales[1], z * scales[2]);
     }

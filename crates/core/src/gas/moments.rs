@@ -97,28 +97,11 @@ impl Whole {
 pub struct SpeciesSums([f64; GAS_KIND.len()]);
 
 impl SpeciesSums {
-    /// The energy of rotation about the axes that contacts turn.
-    fn turning(kind: &Species<'_>, state: &FreeBody) -> f64 {
-        let (moments, own) = (kind.body.moments(), state.spin.parts());
-        let energy = |i: usize| {
-            if kind.turned[i] {
-                0.5 * moments[i] * own[i] * own[i]
-            } else {
-                0.0
-            }
-        };
-        energy(0) + energy(1) + energy(2)
-    }
-
     /// Adds a body.
     #[inline(always)]
     pub fn add(&mut self, kind: &Species<'_>, state: &FreeBody) {
-        let (body, velocity) = (kind.body, state.velocity);
-        let own = state.spin.parts();
-        let moments = body.moments();
-        let energy = |i: usize| 0.5 * moments[i] * own[i] * own[i];
-        let [x, y, z] = [energy(0), energy(1), energy(2)];
-        let turning = Self::turning(kind, state);
+        let velocity = state.velocity;
+        let ([x, y, z], turning) = rotation(kind, state);
         let square = velocity.dot(velocity);
         let cosine = |other: Vector| {
             let size = square * other.dot(other);
@@ -129,7 +112,7 @@ impl SpeciesSums {
                 0.0
             }
         };
-        let PairState { attitude, spin, .. } = state.state(body);
+        let PairState { attitude, spin, .. } = state.state(kind.body);
         let axis = attitude.rotate(Vector::new(0.0, 0.0, 1.0));
         let row = [
             square,
@@ -156,6 +139,16 @@ impl SpeciesSums {
     }
 }
 
+/// The energies of rotation about the principal axes, and their sum over those about which contacts turn the body.
+#[inline(always)]
+fn rotation(kind: &Species<'_>, state: &FreeBody) -> ([f64; 3], f64) {
+    let (moments, own) = (kind.body.moments(), state.spin.parts());
+    let energy = |i: usize| 0.5 * moments[i] * own[i] * own[i];
+    let each = [energy(0), energy(1), energy(2)];
+    let turned = |i: usize| if kind.turned[i] { each[i] } else { 0.0 };
+    (each, turned(0) + turned(1) + turned(2))
+}
+
 /// The bodies of a kind in bins of v over its root mean square, and of (E_rot/⟨E_rot⟩)^(1/2), E_rot about the axes that contacts turn.
 pub struct Distributions([[f64; BINS]; 2]);
 
@@ -165,7 +158,7 @@ impl Distributions {
         let squares = |i: usize| {
             let state = state(i);
             let velocity = state.velocity;
-            [velocity.dot(velocity), SpeciesSums::turning(kind, &state)]
+            [velocity.dot(velocity), rotation(kind, &state).1]
         };
         let mut sums = [0.0; 2];
         for [v, energy] in (0..count).map(squares) {

@@ -20,7 +20,6 @@ impl Compliance {
     ///
     /// # Errors
     /// [`Error::Parameter`] unless the matrix is finite and positive definite.
-    #[inline(always)]
     pub fn new(entries: Symmetric) -> Result<Self, Error> {
         let [first, second, third] = Factors::new(&entries).pivots;
         let size = entries.xx + entries.yy + entries.zz;

@@ -155,30 +155,17 @@ impl<'a> Law<'a> {
     ///
     /// # Errors
     /// [`Fault`] if a law of one's own gives no impulse that is possible.
-    #[inline(always)]
     pub fn answer(&self, compliance: &Compliance, velocity: Vector) -> Result<Answer, Fault> {
-        self.answer_with(compliance, velocity, |normal| normal)
+        self.answer_drawn(compliance, velocity, None)
     }
 
-    /// The same where ε_n scatters, with a uniform number in (0, 1).
+    /// The same, and where ε_n scatters with a uniform number in (0, 1).
     #[inline(always)]
     pub(crate) fn answer_drawn(
         &self,
         compliance: &Compliance,
         velocity: Vector,
-        chance: f64,
-    ) -> Result<Answer, Fault> {
-        let drawn = |normal| scattered(one(normal), self.deviation, one(chance)).as_slice()[0];
-        self.answer_with(compliance, velocity, drawn)
-    }
-
-    /// The impulse with a function of what ε_n is at the speed of the contact.
-    #[inline(always)]
-    fn answer_with(
-        &self,
-        compliance: &Compliance,
-        velocity: Vector,
-        drawn: impl Fn(f64) -> f64,
+        chance: Option<f64>,
     ) -> Result<Answer, Fault> {
         // One that leaves only touches.
         let velocity = Vector::new(velocity.x, velocity.y, velocity.z.min(0.0));
@@ -189,7 +176,11 @@ impl<'a> Law<'a> {
             velocity: Components::in_lane(velocity),
             compliance: *compliance,
         };
-        let normal = one(drawn(self.normal.at(velocity.z.abs())));
+        let normal = one(self.normal.at(velocity.z.abs()));
+        let normal = match chance {
+            Some(chance) => scattered(normal, self.deviation, one(chance)),
+            None => normal,
+        };
         let response = self.rule.respond::<_, true>(&contact, normal);
         Ok(Answer {
             impulse: response.impulse.in_axes(),

@@ -27,6 +27,12 @@ impl Quaternion {
         Self { w, x, y, z }
     }
 
+    /// w, x, y and z.
+    #[inline(always)]
+    pub const fn parts(self) -> [f64; 4] {
+        [self.w, self.x, self.y, self.z]
+    }
+
     /// The rotation backward.
     #[inline(always)]
     pub const fn inverse(self) -> Self {

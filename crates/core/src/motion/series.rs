@@ -94,7 +94,7 @@ impl Series {
         self.length = self.reach / size;
         let [a, b, c] = top.couplings.map(|f| f * self.length);
         let half = 0.5 * self.length;
-        let mut q = [attitude.w, attitude.x, attitude.y, attitude.z];
+        let mut q = attitude.parts();
         let mut turn = spin.parts();
         // Of each power of q the vectors by which it is multiplied with ω₁, ω₂ and ω₃, and of ω (ω₂, ω₃, ω₁, 0).
         let mut rows = [[[0.0; 4]; 4]; TERMS];

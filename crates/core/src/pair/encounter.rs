@@ -222,7 +222,7 @@ impl FreeBody {
 
     /// The change by an impulse at a point.
     #[inline(always)]
-    fn push(&mut self, body: &Partner, arm: Vector, impulse: Vector, sign: f64) {
+    pub fn push(&mut self, body: &Partner, arm: Vector, impulse: Vector, sign: f64) {
         self.velocity = impulse.mul_add(sign * body.inverse_mass, self.velocity);
         let torque = self.attitude.inverse().rotate(arm.cross(impulse));
         let [x, y, z] = body.inverse_moments;
@@ -263,47 +263,40 @@ impl Following<'_, '_> {
             if contacts == 0 && leaves <= 0.0 {
                 break Ending::Missed;
             }
-            let length = |found: Option<PairTouch>| match found {
+            let mut flown = None;
+            let found = if balls && departure.is_none_or(|left| left.speed > 0.0) {
+                // Balls touch where they come into reach of each other, and that once.
+                steps += 1;
+                (contacts == 0 && self.approach()).then_some(PairTouch {
+                    time: enters,
+                    parts: [0, 0],
+                    size: f64::INFINITY,
+                })
+            } else {
+                let flight = flown.insert(flight(bodies, &self.states));
+                let tops = [&bodies[0].top, &bodies[1].top];
+                if departure.is_some_and(|left| search.rests(tops, flight, &left)) {
+                    break Ending::Collapse;
+                }
+                let times = [enters, leaves];
+                search
+                    .first(flight, departure, times, self.between, &mut steps)
+                    .map_err(|()| Trouble::Unconverged)?
+            };
+            let time = match found {
                 Some(touch) => touch.time,
                 None if leaves < f64::INFINITY => leaves,
                 None => 0.0,
             };
-            let found;
-            if balls && departure.is_none_or(|left| left.speed > 0.0) {
-                // Balls touch where they come into reach of each other, and that once.
-                steps += 1;
-                found = (contacts == 0 && self.approach()).then_some(PairTouch {
-                    time: enters,
-                    parts: [0, 0],
-                    size: f64::INFINITY,
-                });
-                let time = length(found);
-                for (state, body) in self.states.iter_mut().zip(bodies) {
-                    state.turn(body, time);
-                }
-            } else {
-                let mut flight = flight(bodies, &self.states);
-                let tops = [&bodies[0].top, &bodies[1].top];
-                if departure.is_some_and(|left| search.rests(tops, &mut flight, &left)) {
-                    break Ending::Collapse;
-                }
-                let times = [enters, leaves];
-                found = search
-                    .first(&mut flight, departure, times, self.between, &mut steps)
-                    .map_err(|()| Trouble::Unconverged)?;
-                let time = length(found);
-                for (i, state) in self.states.iter_mut().enumerate() {
-                    match flight.turns[i].rotated(time) {
-                        _ if bodies[i].is_plane() => {}
-                        Some(later) => (state.attitude, state.spin) = later,
-                        None => state.turn(bodies[i], time),
-                    }
-                }
-            }
-            let time = length(found);
             clock += time;
-            for state in &mut self.states {
+            for (i, (state, body)) in self.states.iter_mut().zip(bodies).enumerate() {
                 state.position = state.velocity.mul_add(time, state.position);
+                let followed = flown.as_mut();
+                match followed.and_then(|flight: &mut PairFlight| flight.turns[i].rotated(time)) {
+                    _ if body.is_plane() => {}
+                    Some(later) => (state.attitude, state.spin) = later,
+                    None => state.turn(body, time),
+                }
             }
             let Some(touch) = found else {
                 break if contacts == 0 {
@@ -416,12 +409,8 @@ impl Following<'_, '_> {
         let compliance =
             one.compliance(bodies[0], back, arms[0]) + two.compliance(bodies[1], back, arms[1]);
         let met = back.rotate(velocity + one.moves(arms[0]) - two.moves(arms[1])); // (7)
-        let answer = if self.law.deviation > 0.0 {
-            self.law
-                .answer_drawn(&compliance, met, (self.chance)(number))
-        } else {
-            self.law.answer(&compliance, met)
-        };
+        let chance = (self.law.deviation > 0.0).then(|| (self.chance)(number));
+        let answer = self.law.answer_drawn(&compliance, met, chance);
         let answer = answer.map_err(Trouble::Fault)?;
         let impulse = frame.rotate(answer.impulse);
         (self.hit)(&Hit {

@@ -1,6 +1,6 @@
 //! A body as encounters see it.
 
-use super::PairState;
+use super::{FreeBody, PairState};
 use crate::Error;
 use crate::math::{Quaternion, Vector};
 use crate::shape::{AnyBody, Piece, PieceKind, Top};
@@ -105,6 +105,11 @@ impl Partner {
         self.top.moments()
     }
 
+    /// The rotation from the principal axes to those that the body was given in.
+    pub fn axes(&self) -> Quaternion {
+        self.axes
+    }
+
     /// The largest distance of a part from the centre of mass; 0 of a plane.
     pub fn reach(&self) -> f64 {
         self.reach
@@ -112,28 +117,17 @@ impl Partner {
 
     /// A body after a time of free flight.
     pub fn later(&self, state: &PairState, time: f64) -> PairState {
-        let (attitude, spin) = self
-            .top
-            .turned(state.attitude * self.axes, state.spin, time);
-        PairState {
-            position: state.velocity.mul_add(time, state.position),
-            attitude: attitude * self.axes.inverse(),
-            spin,
-            ..*state
-        }
+        let mut free = FreeBody::new(self, state);
+        free.position = free.velocity.mul_add(time, free.position);
+        free.turn(self, time);
+        free.state(self)
     }
 
-    /// A body after an impulse at a point, both in the axes of space: (11).
+    /// A body after an impulse at a point, both in the axes of space.
     pub fn struck(&self, state: &PairState, point: Vector, impulse: Vector) -> PairState {
-        let principal = state.attitude * self.axes;
-        let torque = (point - state.position).cross(impulse);
-        let within = principal.inverse().rotate(torque).parts();
-        let [x, y, z] = std::array::from_fn(|i| self.inverse_moments[i] * within[i]);
-        PairState {
-            velocity: impulse.mul_add(self.inverse_mass, state.velocity),
-            spin: state.spin + principal.rotate(Vector::new(x, y, z)),
-            ..*state
-        }
+        let mut free = FreeBody::new(self, state);
+        free.push(self, point - state.position, impulse, 1.0);
+        free.state(self)
     }
 
     /// The angular momentum about the centre of mass, in the axes of space.

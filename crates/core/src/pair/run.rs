@@ -5,7 +5,7 @@ use super::{Partner, sample::Encounters};
 use crate::Error;
 use crate::contact::Between;
 use crate::law::Law;
-use crate::math::{Quaternion, Vector};
+use crate::math::Vector;
 use crate::random::of_impact;
 use crate::simd::Level;
 use crate::simd::elementary::angle;
@@ -387,14 +387,9 @@ impl Encounters<'_> {
         for [a, b, c, d] in vectors {
             row.extend_from_slice([a.parts(), b.parts(), c.parts(), d.parts()].as_flattened());
         }
-        let parts = |q: Quaternion| [q.w, q.x, q.y, q.z];
-        let attitudes = [
-            parts(a.attitude),
-            parts(b.attitude),
-            parts(c.attitude),
-            parts(d.attitude),
-        ];
-        row.extend_from_slice(attitudes.as_flattened());
+        for state in [a, b, c, d] {
+            row.extend_from_slice(&state.attitude.parts());
+        }
     }
 }
 
