@@ -181,7 +181,8 @@ def fit_counts(family: str, counts: Counts, make: Maker, start: ArrayLike, *, fi
     def cost(point: Array) -> float:
         return -counts.loglikelihood(make(point, median, spread)[0]) / counts.total
 
-    # A simplex comes near the maximum from afar, a quasi-Newton method finds it to the last digits.
+    # A simplex comes near the maximum from afar, a quasi-Newton method finds it. Where the slope is below
+    # 1e-6 a step would gain less than 1e-12, near what rounding leaves of the cost.
     near = optimize.minimize(
         cost,
         point,
@@ -193,7 +194,7 @@ def fit_counts(family: str, counts: Counts, make: Maker, start: ArrayLike, *, fi
             "maxiter": 4000,
         },
     ).x
-    point = optimize.minimize(cost, near, method="BFGS", options={"gtol": 1e-8}).x
+    point = optimize.minimize(cost, near, method="BFGS", jac="3-point", options={"gtol": 1e-6}).x
     distribution, parameters = make(point, median, spread)
     if isinstance(distribution, Unfrozen):
         distribution = distribution.frozen()
