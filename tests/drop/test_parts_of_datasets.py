@@ -49,10 +49,11 @@ def test_a_fit_to_later_impacts_needs_no_drop() -> None:
 
 
 def test_a_fit_without_an_error_of_gravity() -> None:
-    """It is then exact, as it is by default."""
+    """It is then exact, as one of an earlier version was, which knew of no error of the clock, either."""
     found = MEASURED.copy()
-    del found.attrs["gravity_uncertainty"]
-    assert flight.fit(found).parameters == flight.fit(MEASURED).parameters
+    del found.attrs["gravity_uncertainty"], found.attrs["clock_uncertainty"]
+    exact = MEASURED.assign_attrs(gravity_uncertainty=0.0, clock_uncertainty=0.0)
+    assert flight.fit(found).parameters == flight.fit(exact).parameters
 
 
 def test_a_clock_of_impacts_that_follow_one_another() -> None:

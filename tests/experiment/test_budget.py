@@ -19,17 +19,24 @@ def deviation(data: object, source: str, name: str = "standard_deviation") -> np
     return data[name].sel(source=source).values  # type: ignore[index, no-any-return]
 
 
-def test_errors_of_times_g_and_drop_are_those_of_a_monte_carlo() -> None:
+def test_errors_of_times_g_clock_and_drop_are_those_of_a_monte_carlo() -> None:
     """20 000 series, evaluated plainly: a standard deviation is known to 0.5 %, 4 of these are allowed."""
     rng = np.random.default_rng(3)
-    n, error, g_error, h_error = 12, 2e-4, 0.05, 1e-3
+    n, error, g_error, h_error, clock_error = 12, 2e-4, 0.05, 1e-3, 4e-3
     data = rs.error_budget(
-        ROUND, LAW, **SETTING, timing=error, gravity_uncertainty=g_error, drop_uncertainty=h_error
+        ROUND,
+        LAW,
+        **SETTING,
+        timing=error,
+        gravity_uncertainty=g_error,
+        clock_uncertainty=clock_error,
+        drop_uncertainty=h_error,
     ).data
     flights = 2.0 / 9.81 * math.sqrt(2 * 9.81 * 0.1) * 0.95 ** np.arange(1, n + 1)
     times = np.concatenate([[0.0], np.cumsum(flights)])
     draws = 20_000
-    heard = np.diff(times + rng.normal(0.0, error, (draws, n + 1)))
+    rate = 1.0 + rng.normal(0.0, clock_error, (draws, 1))
+    heard = np.diff((times + rng.normal(0.0, error, (draws, n + 1))) * rate)
     g, h = 9.81 + rng.normal(0.0, g_error, draws), 0.1 + rng.normal(0.0, h_error, draws)
     ratios = heard[:, 1:] / heard[:, :-1]
     assert deviation(data, "timing")[1:] == pytest.approx(ratios.std(axis=0), rel=0.02)
@@ -37,12 +44,11 @@ def test_errors_of_times_g_and_drop_are_those_of_a_monte_carlo() -> None:
     bias = deviation(data, "timing", "bias")[1:]
     assert np.all(np.abs(ratios.mean(axis=0) - 0.95 - bias) < 4.0 * ratios.std(axis=0) / math.sqrt(draws))
     first = g * heard[:, 0] / 2.0 / np.sqrt(2.0 * g * h)
-    parts = [deviation(data, name)[0] for name in ("timing", "gravity", "drop")]
+    sources = ("timing", "gravity", "clock", "drop")
+    parts = [deviation(data, name)[0] for name in sources]
     assert math.hypot(*parts) == pytest.approx(first.std(), rel=0.02)
     mean = np.column_stack([first, ratios]).mean(axis=1)
-    parts = [
-        float(deviation(data, name, "mean_standard_deviation")) for name in ("timing", "gravity", "drop")
-    ]
+    parts = [float(deviation(data, name, "mean_standard_deviation")) for name in sources]
     assert math.hypot(*parts) == pytest.approx(mean.std(), rel=0.02)
 
 
@@ -57,7 +63,8 @@ def test_the_fit_is_that_of_flight_fit() -> None:
         times, 1e-5, drop_height=0.1, drop_height_uncertainty=1e-3, gravity_uncertainty=1e-3
     )
     told = rs.flight.fit(series).errors["restitution"]
-    parts = [deviation(data, s, "parameter_standard_deviation")[0] for s in ("timing", "gravity", "drop")]
+    sources = ("timing", "gravity", "clock", "drop")
+    parts = [deviation(data, s, "parameter_standard_deviation")[0] for s in sources]
     assert math.hypot(*parts) == pytest.approx(told, rel=1e-3)
 
 
@@ -166,7 +173,15 @@ def test_a_required_roundness_keeps_the_error_that_was_asked_for() -> None:
 def test_materials_are_fitted_by_their_own_law() -> None:
     metal = rs.Plastic(yield_speed=0.05)
     budget = rs.error_budget(
-        ROUND, rs.Frictionless(normal=metal), drop=0.1, impacts=5, timing=1e-6, drag=None, contact_time=0.0
+        ROUND,
+        rs.Frictionless(normal=metal),
+        drop=0.1,
+        impacts=5,
+        timing=1e-6,
+        gravity_uncertainty=0.0,
+        clock_uncertainty=0.0,
+        drag=None,
+        contact_time=0.0,
     )
     assert budget.data.parameter.values.tolist() == ["yield_speed"]
     assert float(budget.data.parameter_value[0]) == pytest.approx(0.05, rel=1e-6)

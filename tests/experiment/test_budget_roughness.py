@@ -45,7 +45,7 @@ def test_the_scatter_is_that_of_rough_spheres(law: Any, tangential: float | None
 
 def test_roughness_adds_up_with_the_others() -> None:
     data = budget(roughness=1e-7, timing=1e-5)
-    parts = data.standard_deviation.sel(source=["shape", "roughness", "timing"])
+    parts = data.standard_deviation.sel(source=["shape", "roughness", "timing", "gravity", "clock"])
     total = np.sqrt((parts**2).sum("source"))
     assert data.standard_deviation.sel(source="total").values == pytest.approx(total.values)
     without = budget(timing=1e-5)

@@ -201,6 +201,7 @@ def test_a_dataset_says_what_was_measured(
         2e-5,
         gravity=9.8,
         gravity_uncertainty=0.02,
+        clock_uncertainty=3e-4,
         drop_height=height,
         drop_height_uncertainty=error,
         drag=drag,
@@ -210,21 +211,21 @@ def test_a_dataset_says_what_was_measured(
     assert (found.gravity, found.drop) == (9.8, height)
     assert found.terminal == (drag.terminal_velocity if drag else None)
     of_times = [0.0 if np.isnan(time) else 2e-5**2 for time in times]
-    common = [0.02**2, error**2, drag.uncertainty**2 if drag else 0.0, 0.0]
+    common = [0.02**2, error**2, drag.uncertainty**2 if drag else 0.0, 0.0, 3e-4**2]
     np.testing.assert_allclose(found.variances, [*of_times, *common], rtol=1e-14)
 
 
 @pytest.mark.parametrize("drag", [None, DRAG])
 def test_derivatives_of_a_chain_are_its_differences(drag: rs.flight.Drag | None) -> None:
-    """By each time, g, drop, terminal velocity and contact time; 0 where there is no speed."""
+    """By each time, g, drop, terminal velocity, contact time and clock; 0 where there is no speed."""
     times = one_series(6)
     times[3] = np.nan
-    given = measured(times, np.full(6, 1e-5), (9.81, 0.0), (0.2, 0.0), drag)
+    given = measured(times, np.full(6, 1e-5), (9.81, 0.0), (0.2, 0.0), drag, None, 0.0)
     found = chain(given)
     assert np.isnan(found.before).tolist() == [False, False, False, True, True, False]
     assert np.isnan(found.after).tolist() == [False, False, True, True, False, True]
-    for number in range(times.size + 4):
-        step = np.zeros(times.size + 4)
+    for number in range(times.size + 5):
+        step = np.zeros(times.size + 5)
         step[number] = 1e-5
         up, down = chain(given.moved(step)), chain(given.moved(-step))
         for by, one, other in (

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from reference.bouncing import impact_times
 
 EXPERIMENTS = 25
 ERROR = 3e-5
+EXACT: dict[str, Any] = {"gravity_uncertainty": 0.0, "clock_uncertainty": 0.0}
 
 SOFT = rs.Viscoelastic(young_modulus=1e8, poisson_ratio=0.4, dissipation=5e-6, density=1200.0, radius=5e-3)
 
@@ -30,7 +32,9 @@ def experiments(request: pytest.FixtureRequest) -> tuple[str, list[rs.flight.Law
     rng = np.random.default_rng(11)
     true = impact_times(LAWS[name][1], 2.5, 12)
     noise = rng.normal(0.0, ERROR, (EXPERIMENTS, true.size))
-    return name, [rs.flight.fit(rs.flight.restitution(true + errors, ERROR), name) for errors in noise]
+    return name, [
+        rs.flight.fit(rs.flight.restitution(true + errors, ERROR, **EXACT), name) for errors in noise
+    ]
 
 
 def test_chi_square_of_a_perfect_model_is_its_degrees_of_freedom(
@@ -219,3 +223,89 @@ def test_a_scatter_of_zero_is_not_certain() -> None:
     certain, averaged = (rs.flight.fit(one, "constant", scatter=each) for each in (0.0, "fit"))
     assert averaged.scatter < 1e-3 < averaged.scatter_error < 0.02
     assert averaged.errors["restitution"] > 1.5 * certain.errors["restitution"]
+
+
+def test_speeds_and_heights_have_the_errors_of_g_and_of_the_clock() -> None:
+    """300 laboratories anywhere on the Earth with clocks of their own: pulls of 1, of nothing that was given.
+
+    A quotient of times has neither error; the first one has, of a drop whose height was measured.
+    """
+    rng = np.random.default_rng(12)
+    g, rate = 9.81 * (1.0 + 3e-3 * rng.standard_normal(300)), 1.0 + 1e-4 * rng.standard_normal(300)
+    pulls = []
+    for one, clock in zip(g, rate, strict=True):
+        speed = math.sqrt(2.0 * one * 0.3)
+        flights = 2.0 * speed / one * 0.9 ** np.arange(1, 9)
+        times = np.append(0.0, np.cumsum(flights)) / clock
+        data = rs.flight.restitution(times, 1e-7, drop_height=0.3)
+        true = speed * 0.9 ** np.arange(9)
+        of_speed = (data.impact_velocity.values - true) / data.impact_velocity_error.values
+        first = (float(data.restitution[0]) - 0.9) / float(data.restitution_error[0])
+        pulls.append([*of_speed[:2], first])
+        assert float(data.restitution_error[3]) < 1e-6
+    # Known to 0.04 each; 4 of these are allowed.
+    assert np.std(pulls, axis=0) == pytest.approx([1.0, 1.0, 1.0], abs=0.16)
+
+
+@pytest.mark.parametrize(("g_error", "clock_error"), [(0.0, 2e-3), (0.01, 2e-3), (None, 0.0)])
+def test_a_yield_speed_has_the_errors_of_g_and_of_a_wrong_clock(
+    g_error: float | None, clock_error: float
+) -> None:
+    """It is proportional to the speeds: 60 wrong clocks, with and without a g that was measured."""
+    rng, pulls = np.random.default_rng(13), []
+    true = impact_times(LAWS["plastic"][1], 2.5, 12)
+    for _ in range(60):
+        off = (3e-3 if g_error is None else g_error / 9.81) * rng.standard_normal()
+        times = true / (1.0 + off) / (1.0 + clock_error * rng.standard_normal())
+        data = rs.flight.restitution(times, 1e-7, gravity_uncertainty=g_error, clock_uncertainty=clock_error)
+        fit = rs.flight.fit(data, "plastic")
+        pulls.append((fit.parameters["yield_speed"] - 0.05) / fit.errors["yield_speed"])
+    assert np.std(pulls) == pytest.approx(1.0, abs=0.36)  # known to 0.09
+
+
+def a_class(tables: int, drops: int, apart: float, seed: int) -> tuple[list[xr.Dataset], list[int]]:
+    """Round balls at tables whose plates differ by this; drops of one table by 0.0005, impacts as well."""
+    rng, found = np.random.default_rng([seed, 5]), []
+    for _ in range(tables):
+        plate = 0.93 + apart * rng.standard_normal()
+        for _ in range(drops):
+            mean = plate + 5e-4 * rng.standard_normal()
+            steps = mean + 5e-4 * rng.standard_normal(11)
+            times = np.append(0.0, np.cumsum(2.0 * 1.4 / 9.81 * np.cumprod(steps)))
+            found.append(rs.flight.restitution(times + rng.normal(0.0, 2e-5, times.size), 2e-5))
+    return found, [table for table in range(tables) for _ in range(drops)]
+
+
+def test_a_class_has_one_number_its_error_and_what_differs_between_tables() -> None:
+    """20 plates that differ by 0.002 leave 0.00045 to the mean, of whatever precision the times are."""
+    drops, tables = a_class(20, 2, 2e-3, 1)
+    together = rs.flight.fit(drops, scatter="fit", groups=[f"table {one}" for one in tables])
+    assert together.parameters["restitution"] == pytest.approx(0.93, abs=3.0 * 4.5e-4)
+    assert 3e-4 < together.errors["restitution"] < 7e-4
+    assert 1.2e-3 < together.between_groups < 3e-3  # known to a sixth
+    assert 2e-4 < together.between < 9e-4
+    assert "between groups 0.00" in str(together)
+    alone = rs.flight.fit(drops, scatter="fit")  # as if all drops were of one table
+    assert alone.errors["restitution"] < 0.85 * together.errors["restitution"]
+    same = rs.flight.fit(
+        drops[::2], scatter="fit", groups=tables[::2]
+    )  # one drop a table: no term of its own
+    assert same.between_groups_error == 0.0 < 1e-3 < same.between
+    with pytest.raises(ValueError, match=r"^groups = \[1, 2\]: must be a label for each of the 40 series"):
+        rs.flight.fit(drops, scatter="fit", groups=[1, 2])
+    with pytest.raises(ValueError, match=r"^groups: given with scatter = 0\.0; must come with 'fit'"):
+        rs.flight.fit(drops, groups=tables)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("apart", [0.0, 2e-3])
+def test_the_mean_of_a_class_is_covered(apart: float) -> None:
+    """Of 40 classes of 20 tables and two drops each; fewer than 31 in 40 have a probability of 0.005."""
+    pulls, errors = [], []
+    for seed in range(1, 41):
+        drops, tables = a_class(20, 2, apart, seed)
+        found = rs.flight.fit(drops, scatter="fit", groups=tables)
+        pulls.append((found.parameters["restitution"] - 0.93) / found.errors["restitution"])
+        errors.append(found.errors["restitution"])
+    assert np.sum(np.abs(pulls) < 1.645) >= 31
+    assert np.median(errors) < (6e-4 if apart else 2.5e-4)

@@ -13,6 +13,8 @@ from scipy.optimize import least_squares
 import restitution as rs
 from reference.bouncing import flight_in_air
 from restitution import flight
+from restitution.experiment.flight._problem import Misfit, Scatter, joined
+from restitution.experiment.flight.chain import measured_of
 from restitution.experiment.flight.laws import by_parameters, by_speed, law_named
 
 SOFT: dict[str, Any] = {"young_modulus": 1e8, "poisson_ratio": 0.4, "density": 1200.0, "radius": 5e-3}
@@ -31,7 +33,7 @@ def coefficient(law: str, parameters: Any) -> Callable[[float], float]:
 
 
 TRUE = {"constant": [0.93], "power law": [0.9, 0.04], "viscoelastic": [BETA], "plastic": [0.05]}
-G, G_ERROR = 9.81, 0.02
+G, G_ERROR, CLOCK_ERROR = 9.81, 0.02, 1e-3
 
 
 class Series:
@@ -61,6 +63,7 @@ class Series:
             self.error,
             gravity=G,
             gravity_uncertainty=G_ERROR,
+            clock_uncertainty=CLOCK_ERROR,
             **drop,  # type: ignore[arg-type]
         )
 
@@ -70,7 +73,7 @@ class Series:
 
 
 def by_true_times(law: str, several: list[Series], scatter: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Minimise χ² over the law, g, and start, first speed and kicks of each series.
+    """Minimise χ² over the law, g, the rate of the clock, and start, first speed and kicks of each series.
 
     Give the parameters of the law, their covariance, and χ². Without a drop the first interval only tells the
     speed at the second impact, so that the first impact gets no kick and any coefficient is as good.
@@ -78,9 +81,9 @@ def by_true_times(law: str, several: list[Series], scatter: float) -> tuple[np.n
     free = len(TRUE[law])
 
     def residuals(point: np.ndarray) -> np.ndarray:
-        one_law, gravity = coefficient(law, point[:free]), point[free]
-        parts = [np.array([(gravity - G) / G_ERROR])]
-        place = free + 1
+        one_law, (gravity, rate) = coefficient(law, point[:free]), point[free : free + 2]
+        parts = [np.array([(gravity - G) / G_ERROR, rate / CLOCK_ERROR])]
+        place = free + 2
         for one in several:
             start, speed = point[place : place + 2]
             place += 2
@@ -93,12 +96,12 @@ def by_true_times(law: str, several: list[Series], scatter: float) -> tuple[np.n
                 parts.append(standard)
                 place += number
             times = one.predicted(one_law, start, speed, gravity, kicks)
-            parts.append((one.times - times) / one.error)
+            parts.append((one.times - times / (1.0 + rate)) / one.error)
             if one.drop is not None:
                 parts.append(np.array([(speed**2 / (2 * gravity) - one.drop) / one.drop_error]))
         return np.concatenate(parts)
 
-    first = [*TRUE[law], G]
+    first = [*TRUE[law], G, 0.0]
     for one in several:
         first += [0.3, 2.4 if one.drop is None else math.sqrt(2 * G * one.drop)]
         first += [0.0] * one.coefficients() if scatter else []
@@ -194,7 +197,8 @@ def test_the_fitted_scatter_is_the_most_likely(law: str) -> None:
 
 def test_the_scatter_of_exact_times_is_that_of_the_coefficients() -> None:
     """Of a Gaussian: the mean, and the root of the sum of squares over n - 1; errors σ/√n and σ/√(2n)."""
-    data = flight.restitution(Series("constant", 25, 0.0, None, 5, 0.01).times)
+    times = Series("constant", 25, 0.0, None, 5, 0.01).times
+    data = flight.restitution(times, gravity_uncertainty=0.0, clock_uncertainty=0.0)
     e = data["restitution"].to_numpy()[1:-1]
     found = flight.fit(data, "constant", scatter="fit")
     assert found.parameters["restitution"] == pytest.approx(e.mean(), rel=1e-6)
@@ -244,13 +248,20 @@ def test_a_power_law_of_equal_speeds_starts_somewhere() -> None:
 def test_series_of_another_g_or_drag_are_refused() -> None:
     one = Series("constant", 8, 2e-5, None, 1, 0.0)
     drag = flight.Drag(terminal_velocity=8.0)
+    same: dict[str, Any] = {
+        "gravity": G,
+        "gravity_uncertainty": G_ERROR,
+        "clock_uncertainty": CLOCK_ERROR,
+    }
     for other in (
-        flight.restitution(one.times, 2e-5, gravity=9.8, gravity_uncertainty=G_ERROR),
-        flight.restitution(one.times, 2e-5, gravity=G),
-        flight.restitution(one.times, 2e-5, gravity=G, gravity_uncertainty=G_ERROR, drag=drag),
+        flight.restitution(one.times, 2e-5, **(same | {"gravity": 9.8})),
+        flight.restitution(one.times, 2e-5, **(same | {"gravity_uncertainty": None})),
+        flight.restitution(one.times, 2e-5, **(same | {"clock_uncertainty": 0.0})),
+        flight.restitution(one.times, 2e-5, **same, drag=drag),
     ):
         with pytest.raises(
-            ValueError, match=r"^data: series with different g, drag or contact time; must have the same"
+            ValueError,
+            match=r"^data: series with different g, drag, contact time or clock; must have the same",
         ):
             flight.fit([one.data(), other])
     changed = one.data()
@@ -272,7 +283,13 @@ def test_errors_of_drag_and_drop_are_those_of_the_coefficients() -> None:
         times.append(times[-1] + duration)
     for given, drop_error in ((drag, 2e-3), (drag, 0.0), (flight.Drag(terminal_velocity=8.0), 2e-3)):
         data = flight.restitution(
-            times, 2e-5, drag=given, drop_height=0.3, drop_height_uncertainty=drop_error
+            times,
+            2e-5,
+            gravity_uncertainty=0.0,
+            clock_uncertainty=0.0,
+            drag=given,
+            drop_height=0.3,
+            drop_height_uncertainty=drop_error,
         )
         covariance = data["restitution_covariance"].to_numpy()[:-1, :-1]
         found = flight.fit(data, "constant")
@@ -321,6 +338,7 @@ def test_variables_say_what_they_are() -> None:
         "title": "Impact velocities and coefficients of restitution from times of impacts",
         "gravity": 9.8,
         "gravity_uncertainty": 0.01,
+        "clock_uncertainty": 1e-4,
         "drop_height": 0.3,
         "drop_height_uncertainty": 1e-3,
         "terminal_velocity": 8.0,
@@ -372,3 +390,35 @@ def test_slopes_of_a_law_at_all_speeds() -> None:
     np.testing.assert_allclose(by_speed(form, v, values), -0.04 * e / v, rtol=1e-8)
     expected = np.stack([e / 0.9, -np.log(v) * e], axis=-1)
     np.testing.assert_allclose(by_parameters(form, v, values), expected, rtol=1e-7, atol=1e-9)
+
+
+@pytest.mark.parametrize("law", TRUE)
+def test_the_likelihood_of_groups_is_that_of_the_whole_covariance(law: str) -> None:
+    """Five series at three tables, sums over series against matrices of all coefficients."""
+    drops = [Series(law, 8, 2e-5, None if seed % 2 else 0.3, seed, 0.003).data() for seed in range(5)]
+    experiments = [measured_of(one) for one in drops]
+    links = joined(experiments, None)
+    known = ~np.isnan(links.before) & ~np.isnan(links.after)
+    problem = Misfit(law_named(law), experiments, known, np.array([0, 0, 1, 1, 2]))
+    values, found = np.array(TRUE[law]), []
+    for scatter in (
+        Scatter(0.003),
+        Scatter(0.002, 0.001),
+        Scatter(0.002, 0.0, 0.004),
+        Scatter(3e-3, 2e-3, 1e-3),
+    ):
+        covariance = problem.covariance(values, scatter)
+        slopes = problem.before[:, None] * by_parameters(problem.form, problem.before, values)
+        inverse = np.linalg.inv(covariance)
+        information = slopes.T @ inverse @ slopes
+        residual = problem.residual(values)
+        move = np.linalg.solve(information, slopes.T @ inverse @ residual)
+        left = residual - slopes @ move
+        dense = left @ inverse @ left + np.linalg.slogdet(covariance)[1] + np.linalg.slogdet(information)[1]
+        prior = sum(np.log1p((width / 3e-3) ** 2) for width in scatter[1:])
+        one = problem._restricted(values, scatter)
+        np.testing.assert_allclose(one.move, move, rtol=1e-6, atol=1e-12)
+        np.testing.assert_allclose(one.information, information, rtol=1e-7)
+        found.append(one.value + 0.5 * dense + prior)
+    # The determinant of the common numbers is the same at all scatters.
+    np.testing.assert_allclose(found, found[0], atol=1e-5)

@@ -40,8 +40,12 @@ def listen(
     ] = None,
     gravity: Annotated[float, typer.Option(metavar="G", help="Acceleration of gravity, m/s2.")] = 9.81,
     gravity_error: Annotated[
-        float, typer.Option(metavar="S", help="Standard error of gravity, m/s2; 0.03 covers the Earth.")
-    ] = 0.03,
+        float | None,
+        typer.Option(metavar="S", help="Standard error of gravity, m/s2; else 3e-3 of it, as on the Earth."),
+    ] = None,
+    clock_error: Annotated[
+        float, typer.Option(metavar="S", help="Standard error of the clock, over what it shows.")
+    ] = 1e-4,
     out_of_roundness: Annotated[
         float | None, typer.Option(metavar="T", help="Out-of-roundness of the ball, m, if it was measured.")
     ] = None,
@@ -87,6 +91,7 @@ def listen(
                 time_uncertainty=time_error,
                 gravity=gravity,
                 gravity_uncertainty=gravity_error,
+                clock_uncertainty=clock_error,
                 out_of_roundness=out_of_roundness,
                 roughness=roughness,
                 wall=wall,

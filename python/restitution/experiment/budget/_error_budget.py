@@ -16,6 +16,7 @@ from restitution.experiment.budget._sources import Source
 from restitution.experiment.budget.experiment import Array, Experiment, Setting, mean_radius
 from restitution.experiment.flight.contact import ContactTime, contact_of
 from restitution.experiment.flight.drag import Drag
+from restitution.experiment.flight.setting import QUARTZ
 from restitution.laws import Law, Material
 
 
@@ -27,7 +28,8 @@ def error_budget(
     impacts: int = 20,
     timing: float = 0.0,
     gravity: float = 9.81,
-    gravity_uncertainty: float = 0.0,
+    gravity_uncertainty: float | None = None,
+    clock_uncertainty: float = QUARTZ,
     drop_uncertainty: float = 0.0,
     tilt: float = 0.0,
     spin: float = 0.0,
@@ -62,7 +64,9 @@ def error_budget(
     timing : float
         Standard error of each time, in s, >= 0.
     gravity, gravity_uncertainty : float
-        g and its standard error, in m/s².
+        g and its standard error, in m/s²; left out 3e-3 of g, as in `restitution.flight.restitution`.
+    clock_uncertainty : float
+        Standard error of the clock over what it shows, in [0, 1).
     drop_uncertainty : float
         Standard error of the height of the drop, in m, >= 0.
     tilt : float
@@ -104,7 +108,8 @@ def error_budget(
 
     Notes
     -----
-    Errors of g do not enter ε, which is a quotient of times, but for the first coefficient and the speeds.
+    Errors of g and of the clock do not enter ε, which is a quotient of times, but for the first coefficient
+    and the speeds.
     Drag that is neglected makes ε too small by the factor 1 - (1 + ε²) v²/(4 V²), to lowest order in the
     speed over the terminal velocity V. Shape, spin and tilt are simulated, without any approximation.
     Roughness is a closed form, docs/rough.md, of a ball that has no other error of shape.
@@ -126,6 +131,7 @@ def error_budget(
         timing=timing,
         gravity=gravity,
         gravity_uncertainty=gravity_uncertainty,
+        clock_uncertainty=clock_uncertainty,
         drop_uncertainty=drop_uncertainty,
         tilt=tilt,
         spin=spin,
@@ -146,6 +152,7 @@ def error_budget(
         "roughness": rough(experiment, body),
         "timing": _sources.timing(experiment),
         "gravity": _sources.gravity(experiment),
+        "clock": _sources.clock(experiment),
         "drop": _sources.drop(experiment),
         "tilt": _sources.tilt(experiment, body, shape) if setting.tilt > 0.0 else _sources.nothing(n),
         "spin": _sources.spin(experiment, body, shape) if setting.spin > 0.0 else _sources.nothing(n),
@@ -173,10 +180,14 @@ def _force(drag: object, body: Body, setting: Setting) -> Drag | None:
 
 
 def weights(experiment: Experiment, *sources: Source, contact: float = 0.0) -> Array:
-    """Return the covariance that a fit assumes: times, g, drop and contact, and one scatter of ε for all."""
+    """Return the covariance that a fit assumes: of what is measured, and one scatter of ε for all."""
     setting = experiment.setting
     known = experiment.covariance(
-        setting.timing, setting.gravity_uncertainty, setting.drop_uncertainty, contact
+        setting.timing,
+        setting.gravity_error,
+        setting.drop_uncertainty,
+        contact,
+        setting.clock_uncertainty,
     )
     # Without any error all impacts have equal weight.
     scatter = max(sum(float(np.mean(np.diag(one.covariance))) for one in sources), 1e-24)
@@ -226,6 +237,7 @@ def _dataset(
         "law": experiment.words,
         "fitted_law": experiment.form.name,
         **experiment.setting.model_dump(),
+        "gravity_uncertainty": experiment.setting.gravity_error,
     }
     if force is not None:
         attrs |= {

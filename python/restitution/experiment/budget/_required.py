@@ -102,7 +102,14 @@ def required_roundness(
 
     ball(_ROUNDEST)
     setting = Setting(
-        drop=drop, impacts=impacts, gravity=gravity, roughness=roughness, particles=particles, seed=seed
+        drop=drop,
+        impacts=impacts,
+        gravity=gravity,
+        gravity_uncertainty=0.0,
+        clock_uncertainty=0.0,
+        roughness=roughness,
+        particles=particles,
+        seed=seed,
     )
     experiment = Experiment.of(law, setting)
     surface = rough(experiment, ball(0.0))

@@ -17,6 +17,7 @@ _SOURCES = {
     "roughness": "roughness",
     "timing": "times",
     "gravity": "g",
+    "clock": "clock",
     "drop": "drop height",
     "tilt": "plate tilt",
     "spin": "spin at release",
@@ -33,8 +34,8 @@ class ErrorBudget(Content):
     Attributes
     ----------
     data : Dataset
-        Over ``source`` ("shape", "roughness", "timing", "gravity", "drop", "tilt", "spin", "drag", "contact",
-        "total"):
+        Over ``source`` ("shape", "roughness", "timing", "gravity", "clock", "drop", "tilt", "spin", "drag",
+        "contact", "total"):
         ``mean_bias`` and ``mean_standard_deviation`` of the mean over a run; over ``source`` and ``impact``:
         ``bias`` and ``standard_deviation`` of one coefficient, ``fit_bias`` and ``fit_standard_deviation`` of
         the fitted ε_n at that speed; over ``source`` and ``parameter``: ``parameter_bias`` and
@@ -154,6 +155,7 @@ _LOOKS: dict[str, tuple[int | None, float, str]] = {
     "roughness": (None, 0.25, "p"),
     "timing": (1, 1.0, "s"),
     "gravity": (2, 1.0, "^"),
+    "clock": (None, 0.85, "h"),
     "drop": (3, 1.0, "v"),
     "tilt": (4, 1.0, "D"),
     "spin": (None, 0.7, "x"),

@@ -91,7 +91,13 @@ def timing(experiment: Experiment) -> Source:
 
 def gravity(experiment: Experiment) -> Source:
     """Take an error of g: ε is a quotient of times, but for the first, whose speed is that of the drop."""
-    covariance = experiment.covariance(gravity=experiment.setting.gravity_uncertainty)
+    covariance = experiment.covariance(gravity=experiment.setting.gravity_error)
+    return Source(np.zeros(experiment.speed.size), covariance)
+
+
+def clock(experiment: Experiment) -> Source:
+    """Take an error of the clock, which acts as one of g that does not change the speed of the drop."""
+    covariance = experiment.covariance(clock=experiment.setting.clock_uncertainty)
     return Source(np.zeros(experiment.speed.size), covariance)
 
 
@@ -115,7 +121,7 @@ def drag(experiment: Experiment, force: Drag, corrected: bool) -> Source:
 
 def contact(experiment: Experiment, time: ContactTime, corrected: bool) -> Source:
     """Take the time of contact: neglected, its effect is a bias; otherwise the error of it remains."""
-    by = experiment.derivatives(experiment.measured(0.0, 0.0, 0.0, 0.0))[:, -1]
+    by = experiment.derivatives(experiment.measured(0.0, 0.0, 0.0, 0.0, 0.0))[:, -2]
     bias = np.zeros_like(by) if corrected else -by * time.at_1_m_s
     return Source(bias, np.outer(by, by) * time.uncertainty**2)
 

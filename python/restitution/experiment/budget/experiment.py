@@ -14,7 +14,6 @@ from scipy.optimize import least_squares
 from restitution._internal.parameters import (
     Number,
     ParameterError,
-    Parameters,
     Whole,
     in_terms_of,
     wrong,
@@ -22,6 +21,7 @@ from restitution._internal.parameters import (
 from restitution.bodies import Body
 from restitution.experiment.flight.chain import COMMON, Measured, chain
 from restitution.experiment.flight.laws import LAWS, LawOfSpeed, by_parameters
+from restitution.experiment.flight.setting import Gravity
 from restitution.experiment.flight.times import LARGEST
 from restitution.laws import (
     Coulomb,
@@ -36,22 +36,18 @@ from restitution.laws import (
 
 Array = npt.NDArray[np.float64]
 
-_LEAST = 1e-30
-"""Of g, in m/s²: with `LARGEST` it keeps speeds from over- and underflow."""
 _MOST = 1000
 """Of coefficients, which have a covariance each with each: so many that no ball reaches them."""
 _SHORTEST = 1e-10
 """Of flights, over the time since release: doubles resolve 1e-16 of that, and ε to 1e-6."""
 
 
-class Setting(Parameters):
+class Setting(Gravity):
     """An experiment: the drop of the ball, and the uncertainty of everything measured."""
 
     drop: Annotated[Number, Field(gt=0, description="m")]
     impacts: Annotated[Whole, Field(ge=3, le=_MOST)]
     timing: Annotated[Number, Field(ge=0, le=LARGEST, description="s")] = 0.0
-    gravity: Annotated[Number, Field(ge=_LEAST, le=LARGEST, description="m/s²")] = 9.81
-    gravity_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m/s²")] = 0.0
     drop_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m")] = 0.0
     tilt: Annotated[Number, Field(ge=0, lt=0.5, description="rad")] = 0.0
     spin: Annotated[Number, Field(ge=0, description="rad/s")] = 0.0
@@ -63,7 +59,7 @@ class Setting(Parameters):
     def _known_to_a_factor(self) -> Self:
         for name in ("gravity", "drop"):
             error, value = getattr(self, f"{name}_uncertainty"), getattr(self, name)
-            if error > value:
+            if error is not None and error > value:
                 raise ParameterError(wrong(f"{name}_uncertainty", error, f"at most {name} = {value!r}"))
         return self
 
@@ -194,16 +190,21 @@ class Experiment:
             )
             raise ParameterError(wrong("law", self.law, allowed))
 
-    def measured(self, timing: float, gravity: float, drop: float, contact: float) -> Measured:
+    def measured(self, timing: float, gravity: float, drop: float, contact: float, clock: float) -> Measured:
         """Return the measured times, g, drop and no contact time, with these standard errors."""
-        variances = np.array([*np.full(self.times.size, timing), gravity, drop, 0.0, contact]) ** 2
+        variances = np.array([*np.full(self.times.size, timing), gravity, drop, 0.0, contact, clock]) ** 2
         return Measured(self.times, self.setting.gravity, self.setting.drop, None, variances)
 
     def covariance(
-        self, timing: float = 0.0, gravity: float = 0.0, drop: float = 0.0, contact: float = 0.0
+        self,
+        timing: float = 0.0,
+        gravity: float = 0.0,
+        drop: float = 0.0,
+        contact: float = 0.0,
+        clock: float = 0.0,
     ) -> Array:
         """Return the covariance of ε less the law at the measured speed, shape (n, n), by standard errors."""
-        given = self.measured(timing, gravity, drop, contact)
+        given = self.measured(timing, gravity, drop, contact, clock)
         by = self.derivatives(given)
         return np.asarray((by * given.variances) @ by.T)
 

@@ -1,10 +1,11 @@
 """A law ε_n(v) fitted to measured impacts, with the whole covariance of the measurement."""
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from dataclasses import replace
 from typing import Literal
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.arrays import real
@@ -23,6 +24,7 @@ def fit(
     law: str | type = "constant",
     *,
     scatter: float | Literal["fit"] = 0.0,
+    groups: Iterable[Hashable] | None = None,
 ) -> LawFit:
     """Fit a law ε_n(v) to measured impacts.
 
@@ -43,6 +45,10 @@ def fit(
         series, as of other drops or plates; errors are averaged over all scatters that are not excluded. If
         the times came without an uncertainty it is fitted, too, where the coefficients tell one from the
         other; the fit's ``note`` says what they tell.
+
+    groups : iterable, optional
+        Of each series the group to which it belongs, such as the name of a student's table: then a scatter
+        between groups is fitted beside that between series of one group, where some have several.
 
     Returns
     -------
@@ -74,7 +80,10 @@ def fit(
     if not (isinstance(scatter, str) and scatter == "fit"):
         allowed = '"fit" or a number in [0, 1e30]'
         scatter = real("scatter", scatter, allowed, lambda width: 0.0 <= width <= LARGEST)
-    problem = Misfit(form, experiments, known)
+    number = _numbered(groups, len(experiments))
+    if number is not None and scatter != "fit":
+        raise ParameterError(Problem("groups", f": given with scatter = {scatter!r}; must come with 'fit'"))
+    problem = Misfit(form, experiments, known, number)
     if scatter == 0.0 and not problem.errors_are_known:
         raise ParameterError(
             Problem("data", ": times without errors; must have an uncertainty > 0, or give scatter='fit'")
@@ -84,7 +93,7 @@ def fit(
         found = separation(experiments)
         note = found.words
         if found.timing > 0.0:
-            problem = Misfit(form, [one.timed(found.timing) for one in experiments], known)
+            problem = Misfit(form, [one.timed(found.timing) for one in experiments], known, number)
             scatter = found.scatter
     try:
         return replace(problem.fit(scatter), note=note)
@@ -92,6 +101,23 @@ def fit(
         raise ParameterError(
             Problem("data", f": the law {form.name!r} has no fit; errors must be small beside the intervals")
         ) from None
+
+
+def _numbered(groups: object, series: int) -> npt.NDArray[np.intp] | None:
+    """Return the number of the group of each series; None where each is its own, or all are of one."""
+    if groups is None:
+        return None
+    allowed = f"a label for each of the {series} series"
+    try:
+        labels = list(groups) if isinstance(groups, Iterable) else []
+        places = {label: place for place, label in enumerate(dict.fromkeys(labels))}
+    except Exception:  # the object may raise anything
+        labels, places = [], {}
+    if len(labels) != series:
+        raise ParameterError(wrong("groups", groups, allowed))
+    if not 1 < len(places) < series:
+        return None
+    return np.array([places[label] for label in labels])
 
 
 def compare(*fits: LawFit) -> str:

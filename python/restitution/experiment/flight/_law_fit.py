@@ -36,6 +36,8 @@ class LawFit(Content):
         as it was given, with error 0, unless it was fitted.
     between, between_error : float
         Standard deviation of ε between series, of drops or plates, and its standard error; 0 for one series.
+    between_groups, between_groups_error : float
+        That between groups of series, as the tables of a class, beside it; 0 without groups.
     impacts : int
         Number of coefficients that were fitted.
     chi2 : float
@@ -71,6 +73,8 @@ class LawFit(Content):
     note: str = ""
     between: float = 0.0
     between_error: float = 0.0
+    between_groups: float = 0.0
+    between_groups_error: float = 0.0
 
     @property
     def p_value(self) -> float:
@@ -80,7 +84,8 @@ class LawFit(Content):
     @property
     def aic(self) -> float:
         """Akaike's criterion 2 k - 2 ln L; lower is better."""
-        free = len(self.parameters) + (self.scatter_error > 0.0) + (self.between_error > 0.0)
+        errors = (self.scatter_error, self.between_error, self.between_groups_error)
+        free = len(self.parameters) + sum(error > 0.0 for error in errors)
         return 2.0 * free - 2.0 * self.loglikelihood
 
     def __call__(self, speed: npt.ArrayLike) -> Array:
@@ -120,6 +125,8 @@ class LawFit(Content):
             parts.append(f"scatter {with_error(self.scatter, self.scatter_error)}")
         if self.between_error > 0.0:
             parts.append(f"between series {with_error(self.between, self.between_error)}")
+        if self.between_groups_error > 0.0:
+            parts.append(f"between groups {with_error(self.between_groups, self.between_groups_error)}")
         freedom = self.degrees_of_freedom
         quality = f"χ²/n = {self.chi2:.1f}/{freedom}"
         if not self.scatter_error > 0.0:

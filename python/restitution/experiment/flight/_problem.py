@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import lru_cache
+from itertools import product
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
@@ -20,26 +21,27 @@ Array = npt.NDArray[np.float64]
 
 _REFUTED = 16.0
 """χ² for each coefficient from which a law is not fitted further."""
-_MOST_EXPANSIONS = 10
-"""Three are enough where errors are small beside intervals."""
+_MOST_EXPANSIONS, _MOST_STEPS = 10, 30
+"""Three are enough where errors are small beside intervals; and steps of Gauss and Newton."""
 
 
 def joined(experiments: list[Measured], shift: Array | None) -> Chain:
     """Put series one after the other, their numbers moved by `shift`.
 
-    The times are each series' own, and so is the height of the drop; g, drag and contact time are common.
+    The times are each series' own, and so is the height of the drop; g, drag, contact time and clock are
+    common.
     """
     if (
         len(
             {
-                (one.gravity, one.terminal, one.contact, *one.variances[[-COMMON, -2, -1]])
+                (one.gravity, one.terminal, one.contact, *one.variances[[-COMMON, -3, -2, -1]])
                 for one in experiments
             }
         )
         != 1
     ):
         raise ParameterError(
-            Problem("data", ": series with different g, drag or contact time; must have the same")
+            Problem("data", ": series with different g, drag, contact time or clock; must have the same")
         )
     sizes = [one.times.size for one in experiments]
     total = sum(sizes)
@@ -50,7 +52,8 @@ def joined(experiments: list[Measured], shift: Array | None) -> Chain:
     row = 0
     for number, (one, size) in enumerate(zip(experiments, sizes, strict=True)):
         rows = slice(row, row + size)
-        places = [*range(row, row + size), total, total + COMMON - 1 + number, total + 1, total + 2]
+        common = [total, total + COMMON - 1 + number, total + 1, total + 2, total + 3]
+        places = [*range(row, row + size), *common]
         part = chain(one if shift is None else one.moved(shift[places]))
         before[rows], after[rows] = part.before, part.after
         before_by[rows, places] = part.before_by
@@ -74,10 +77,11 @@ _STEPS = np.linspace(0.0, 1.0, 13)
 
 
 class Scatter(NamedTuple):
-    """Standard deviations of ε that no error of measurement explains: of each impact, and of each series."""
+    """Standard deviations of ε that no error explains: of each impact, each series and each group of them."""
 
     one: float
     between: float = 0.0
+    groups: float = 0.0
 
 
 NONE = Scatter(0.0)
@@ -89,6 +93,17 @@ class Restricted(NamedTuple):
     value: float
     move: Array
     information: Array
+
+
+def _with_term(products: Array, width: float) -> tuple[Array, float]:
+    """Return AᵀC⁻¹A and ln det C/D of each, where C is D and a term of this width along the last column.
+
+    By the formulas of Sherman and Morrison, and of Sylvester.
+    """
+    last = products[:, :, -1]
+    more = 1.0 + width**2 * last[:, -1]
+    changed = products - width**2 * last[:, :, None] * last[:, None, :] / more[:, None, None]
+    return changed, float(np.log(more).sum())
 
 
 def _finite(value: Callable[[], float]) -> float:
@@ -107,11 +122,17 @@ class Misfit:
     takes for these the most probable true ones. Where that converges, χ² is that of the times themselves.
     """
 
-    def __init__(self, form: LawOfSpeed, experiments: list[Measured], known: npt.NDArray[np.bool_]) -> None:
+    def __init__(
+        self,
+        form: LawOfSpeed,
+        experiments: list[Measured],
+        known: npt.NDArray[np.bool_],
+        groups: npt.NDArray[np.intp] | None = None,
+    ) -> None:
         self.form, self.experiments, self.known = form, experiments, known
-        number = np.repeat(np.arange(len(experiments)), [one.times.size for one in experiments])[known]
-        self.series = np.unique(number).size
-        self.together = number[:, None] == number
+        self.number = np.repeat(np.arange(len(experiments)), [one.times.size for one in experiments])[known]
+        self.series = np.unique(self.number).size
+        self.groups = groups
         self.expand(None)
 
     def expand(self, shift: Array | None) -> None:
@@ -120,13 +141,16 @@ class Misfit:
         self.before_by, self.after_by = links.before_by[known], links.after_by[known]
         self.variances = links.variances
         self.shift = np.zeros_like(links.variances) if shift is None else shift
-        # Likelihood and information ask for both at each point of a search.
+        # Likelihood and information ask for all of these at each point of a search.
         self._jacobian = lru_cache(1)(self._jacobian_at)
         self._covariance = lru_cache(1)(self._covariance_at)
+        self._products = lru_cache(1)(self._products_at)
 
     @property
     def errors_are_known(self) -> bool:
-        return bool(np.all((self.after_by**2 @ self.variances) > 0.0))
+        """Of the times: one of g or of the clock moves all coefficients together."""
+        times = self.variances.size - (COMMON - 1) - len(self.experiments)
+        return bool(np.all((self.after_by[:, :times] ** 2 @ self.variances[:times]) > 0.0))
 
     def jacobian(self, values: Array) -> Array:
         """Differentiate the residuals by the numbers measured."""
@@ -150,7 +174,11 @@ class Misfit:
 
     def _covariance_at(self, values: tuple[float, ...], scatter: Scatter) -> Array:
         by = self._jacobian(values)
-        own = np.diag(np.full(self.before.size, scatter.one**2)) + scatter.between**2 * self.together
+        number = self.number
+        own = np.diag(np.full(number.size, scatter.one**2)) + scatter.between**2 * (number[:, None] == number)
+        if self.groups is not None:
+            group = self.groups[number]
+            own += scatter.groups**2 * (group[:, None] == group)
         return np.asarray((by * self.variances) @ by.T + own * np.outer(self.before, self.before))
 
     def improve(self, values: Array, scatter: Scatter) -> bool:
@@ -223,6 +251,8 @@ class Misfit:
             scatter_error=spread_error.one,
             between=spread.between,
             between_error=spread_error.between,
+            between_groups=spread.groups,
+            between_groups_error=spread_error.groups,
             impacts=residual.size,
             chi2=float(np.sum(self.whitened(values, spread) ** 2)),
             degrees_of_freedom=residual.size - len(names),
@@ -243,9 +273,15 @@ class Misfit:
             def of_scatters(point: Array) -> float:
                 return _finite(lambda: -self._restricted(start, Scatter(*map(_spread, point))).value)
 
-            best = minimize(of_scatters, [first, first - 1.0], method="Nelder-Mead", options={"fatol": 1e-6})
-            spread = Scatter(*map(_spread, best.x))
-            return self.least_squares(start, spread), spread
+            point = [first, first - 1.0] + [first - 1.0] * (self.groups is not None)
+            best = minimize(of_scatters, point, method="Nelder-Mead", options={"fatol": 1e-6})
+            spread, values = Scatter(*map(_spread, best.x)), start
+            for _ in range(_MOST_STEPS):
+                move = self._restricted(values, spread).move
+                values = np.maximum(values + move, self.form.least)
+                if np.all(np.abs(move) <= 1e-9 * np.abs(values)):
+                    break
+            return values, spread
         scale = np.append(np.maximum(np.abs(start), 1e-3), 1.0)
 
         def loss(point: Array) -> float:
@@ -264,22 +300,61 @@ class Misfit:
         values = found.x * scale
         return values[:-1], Scatter(_spread(values[-1]))
 
+    @property
+    def _common(self) -> slice:
+        """Numbers that all series share, in the order of `joined`."""
+        first = self.variances.size - len(self.experiments) - (COMMON - 1)
+        return slice(first, first + COMMON - 1)
+
+    def _products_at(self, values: tuple[float, ...], one: float) -> tuple[Array, float]:
+        """Return AᵀD⁻¹A of each series, and ln det D of all: D has the errors of its times, its drop and ε.
+
+        The columns of A are residuals, their derivatives by the parameters and by the common numbers, and the
+        speeds, as which a term of the series acts.
+        """
+        point = np.array(values)
+        by = self._jacobian(values)
+        slopes = self.before[:, None] * by_parameters(self.form, self.before, point)
+        columns = np.column_stack([self.residual(point), slopes, by[:, self._common], self.before])
+        own = self.variances.copy()
+        own[self._common] = 0.0
+        products, logarithm = [], 0.0
+        for number in np.unique(self.number):
+            rows = self.number == number
+            covariance = (by[rows] * own) @ by[rows].T + np.diag((one * self.before[rows]) ** 2)
+            lower = np.linalg.cholesky(covariance)
+            white = solve_triangular(lower, columns[rows], lower=True)
+            products.append(white.T @ white)
+            logarithm += 2.0 * float(np.log(np.diag(lower)).sum())
+        return np.stack(products), logarithm
+
     def _restricted(self, values: Array, scatter: Scatter, *, step: bool = True) -> Restricted:
         """Return the logarithm of the restricted likelihood, with the prior of what lies between series.
 
         With `step` it is that of the parameters that are best with this scatter, by one step from the values.
         """
-        lower = np.linalg.cholesky(self.covariance(values, scatter))
-        slopes = self.before[:, None] * by_parameters(self.form, self.before, values)
-        both = solve_triangular(lower, np.column_stack([self.residual(values), slopes]), lower=True)
-        residual, slopes = both[:, 0], both[:, 1:]
-        information = np.asarray(slopes.T @ slopes, dtype=np.float64)
-        value = -0.5 * float(residual @ residual) - float(np.log(np.diag(lower)).sum())
-        value -= 0.5 * float(np.linalg.slogdet(information)[1])
-        value -= float(np.log1p((scatter.between / USUAL_BETWEEN) ** 2))
+        products, logarithm = self._products(tuple(values), scatter.one)
+        products, more = _with_term(products, scatter.between)
+        logarithm += more
+        if self.groups is not None:
+            group = self.groups[np.unique(self.number)]
+            products = np.stack([products[group == each].sum(axis=0) for each in np.unique(group)])
+            products, more = _with_term(products, scatter.groups)
+            logarithm += more
+        total = products.sum(axis=0)[:-1, :-1]
+        free = len(values)
+        common = slice(free + 1, None)
+        inner = np.eye(COMMON - 1) + self.variances[self._common][:, None] * total[common, common]
+        total = total - total[:, common] @ np.linalg.solve(
+            inner, self.variances[self._common][:, None] * total[common]
+        )
+        logarithm += float(np.linalg.slogdet(inner)[1])
+        information, pull = total[1 : free + 1, 1 : free + 1], total[1 : free + 1, 0]
+        value = -0.5 * (float(total[0, 0]) + logarithm + float(np.linalg.slogdet(information)[1]))
+        for width in (scatter.between, scatter.groups):
+            value -= float(np.log1p((width / USUAL_BETWEEN) ** 2))
         if not step:
             return Restricted(value, np.zeros_like(values), information)
-        pull = slopes.T @ residual
         move = np.asarray(np.linalg.solve(information, pull), dtype=np.float64)
         return Restricted(value + 0.5 * float(pull @ move), move, information)
 
@@ -302,22 +377,21 @@ class Misfit:
             return np.asarray(top * _STEPS)
 
         largest = value()
-        try:
-            excluded = 2.0 * (largest - value(one=0.0)) > _DECIDED
-        except np.linalg.LinAlgError:  # without errors of the times there is a scatter
-            excluded = True
+        # Without errors of the times there is a scatter.
+        excluded = not self.errors_are_known or 2.0 * (largest - value(one=0.0)) > _DECIDED
         if excluded and self.series == 1:
             return covariance, error
         ones = np.array([best.one]) if excluded else reach("one")
         betweens = reach("between") if self.series > 1 else np.zeros(1)
-        pairs = [Scatter(one, between) for one in ones for between in betweens]
+        groups = reach("groups") if self.groups is not None else np.zeros(1)
+        pairs = [Scatter(*each) for each in product(ones, betweens, groups)]
         found = [self._restricted(values, each) for each in pairs]
         weights = np.exp([each.value - largest for each in found])
         weights /= weights.sum()
         inside = [np.linalg.inv(each.information) + np.outer(each.move, each.move) for each in found]
         off = np.sqrt(weights @ (np.array(pairs) - best) ** 2)
         own = error.one if excluded else float(off[0])
-        return np.einsum("k,kij->ij", weights, np.array(inside)), Scatter(own, float(off[1]))
+        return np.einsum("k,kij->ij", weights, np.array(inside)), Scatter(own, *off[1:].tolist())
 
     def _scatter_error(self, values: Array, scatter: Scatter) -> float:
         """Return the standard error of the scatter, from its information (1/2) tr (C⁻¹ dC/dσ)²."""

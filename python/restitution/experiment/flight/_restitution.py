@@ -11,10 +11,10 @@ import xarray as xr
 
 from restitution._internal.arrays import flag
 from restitution._internal.parameters import ParameterError, wrong
-from restitution.experiment.flight._setting import Drop, Errors
 from restitution.experiment.flight.chain import chain, measured
 from restitution.experiment.flight.contact import ContactTime, contact_of
 from restitution.experiment.flight.drag import Drag
+from restitution.experiment.flight.setting import QUARTZ, Drop, Errors
 from restitution.experiment.flight.times import checked
 
 Array = npt.NDArray[np.float64]
@@ -25,7 +25,8 @@ def restitution(
     uncertainty: npt.ArrayLike | None = None,
     *,
     gravity: float = 9.81,
-    gravity_uncertainty: float = 0.0,
+    gravity_uncertainty: float | None = None,
+    clock_uncertainty: float = QUARTZ,
     drop_height: float | None = None,
     drop_height_uncertainty: float = 0.0,
     drag: Drag | None = None,
@@ -40,8 +41,8 @@ def restitution(
         ε_i = Δt_i/Δt_{i-1}.
 
     One time enters two flights and three coefficients: the errors of neighbours are correlated, and the
-    covariance that is returned holds that, with the errors of g, the drop and the drag, which are common to
-    all.
+    covariance that is returned holds that, with the errors of g, the clock, the drop and the drag, which are
+    common to all.
 
     Parameters
     ----------
@@ -53,7 +54,11 @@ def restitution(
     uncertainty : float or array_like, shape (n,), optional
         Standard error of the times in s, >= 0; independent of one another.
     gravity, gravity_uncertainty : float
-        g and its standard error, in m/s². Buoyancy makes it smaller by the factor 1 - ρ_air/ρ.
+        g and its standard error, in m/s²; left out 3e-3 of g, which covers the surface of the Earth, 9.78 to
+        9.83. Buoyancy makes g smaller by the factor 1 - ρ_air/ρ.
+    clock_uncertainty : float
+        Standard error of the clock over what it shows, in [0, 1): that of the quartz of telephones and sound
+        cards unless another is given. It cancels in quotients of times and enters speeds as that of g.
     drop_height, drop_height_uncertainty : float, optional
         How far the ball fell from rest to the first impact, in m: then the first impact has a velocity and a
         coefficient, too.
@@ -101,13 +106,15 @@ def restitution(
     setting = Errors(
         gravity=gravity,
         gravity_uncertainty=gravity_uncertainty,
+        clock_uncertainty=clock_uncertainty,
         drop_height_uncertainty=drop_height_uncertainty,
     )
     attrs: dict[str, Any] = {
         "title": "Impact velocities and coefficients of restitution from times of impacts",
         "source": f"restitution {version('restitution')}",
         "gravity": setting.gravity,
-        "gravity_uncertainty": setting.gravity_uncertainty,
+        "gravity_uncertainty": setting.gravity_error,
+        "clock_uncertainty": setting.clock_uncertainty,
     }
     drop = None
     if drop_height is not None:
@@ -123,9 +130,8 @@ def restitution(
     contact = contact_of(contact_time)
     if contact is not None:
         attrs |= {"contact_time": contact.at_1_m_s, "contact_time_uncertainty": contact.uncertainty}
-    links = chain(
-        measured(instants, errors, (setting.gravity, setting.gravity_uncertainty), drop, drag, contact)
-    )
+    g = (setting.gravity, setting.gravity_error)
+    links = chain(measured(instants, errors, g, drop, drag, contact, setting.clock_uncertainty))
     ratio = links.after / links.before
     with np.errstate(invalid="ignore"):
         ratio_by = (links.after_by - ratio[:, None] * links.before_by) / links.before[:, None]

@@ -8,15 +8,15 @@ import xarray as xr
 
 from restitution._internal.parameters import ParameterError, Problem
 from restitution.drop.recorded import check_successive
-from restitution.experiment.flight._setting import setting_of
 from restitution.experiment.flight.contact import ContactTime, delays
 from restitution.experiment.flight.drag import Drag, fall, speeds
+from restitution.experiment.flight.setting import setting_of
 from restitution.experiment.flight.times import check_series
 
 Array = npt.NDArray[np.float64]
 
-COMMON = 4
-"""Quantities that are measured once: g, the height of the drop, the terminal velocity, the contact time."""
+COMMON = 5
+"""Measured once: g, the height of the drop, the terminal velocity, the contact time; and the clock."""
 _LONGEST_CONTACT = 4.0
 """Intervals must be longer than this many times of contact at 1 m/s."""
 _LONGEST = 50.0
@@ -25,17 +25,18 @@ _LONGEST = 50.0
 
 @dataclass(frozen=True)
 class Chain:
-    """The speeds of n impacts, and their derivatives by the n + 4 numbers that were measured.
+    """The speeds of n impacts, and their derivatives by the n + 5 numbers that were measured.
 
     Attributes
     ----------
     before, after : ndarray, shape (n,)
         Speed towards and away from the plane, in m/s; NaN where the times do not determine it.
-    before_by, after_by : ndarray, shape (n, n + 4)
-        Derivatives by the n times, g, the height of the drop, the terminal velocity and the contact time at
-        1 m/s; 0 where the speed is NaN.
-    variances : ndarray, shape (n + 4,)
-        Of these n + 4 numbers. Their errors are independent.
+    before_by, after_by : ndarray, shape (n, n + 5)
+        Derivatives by the n times, g, the height of the drop, the terminal velocity, the contact time at
+        1 m/s and the rate of the clock, by which all true intervals are longer than it shows; 0 where the
+        speed is NaN.
+    variances : ndarray, shape (n + 5,)
+        Of these n + 5 numbers. Their errors are independent.
     """
 
     before: Array
@@ -47,7 +48,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class Measured:
-    """Measured values of one series of n impacts, and the variances of these n + 4 numbers.
+    """Measured values of one series of n impacts, and the variances of these numbers and of the clock.
 
     Attributes
     ----------
@@ -57,7 +58,7 @@ class Measured:
         In m/s².
     drop, terminal : float or None
         Height of the drop in m, and terminal velocity in m/s, where they count.
-    variances : ndarray, shape (n + 4,)
+    variances : ndarray, shape (n + 5,)
         In the order of `Chain`; 0 where there is not a number.
     contact : float
         Time of contact at 1 m/s, in s.
@@ -76,11 +77,11 @@ class Measured:
         return replace(self, variances=np.append(np.full(n, error**2), self.variances[n:]))
 
     def moved(self, shift: Array) -> "Measured":
-        """Return the chain with other numbers, which differ by `shift`, shape (n + 4,)."""
+        """Return the chain with other numbers, which differ by `shift`, shape (n + 5,)."""
         n = self.times.size
         return replace(
             self,
-            times=self.times + shift[:n],
+            times=(self.times + shift[:n]) * (1.0 + shift[n + 4]),
             gravity=self.gravity + float(shift[n]),
             drop=None if self.drop is None else self.drop + float(shift[n + 1]),
             terminal=None if self.terminal is None else self.terminal + float(shift[n + 2]),
@@ -94,10 +95,11 @@ def measured(
     gravity: tuple[float, float],
     drop: tuple[float, float] | None,
     drag: Drag | None,
-    contact: ContactTime | None = None,
+    contact: ContactTime | None,
+    clock: float,
     name: str = "times",
 ) -> Measured:
-    """Put together what was measured; g and the height of the drop come with their standard errors.
+    """Put together what was measured, with the standard errors of g, of the height and of the clock.
 
     Raises
     ------
@@ -120,6 +122,7 @@ def measured(
         0.0 if drop is None else drop[1],
         0.0 if drag is None else drag.uncertainty,
         contact.uncertainty,
+        clock,
     ]
     return Measured(
         times,
@@ -148,9 +151,9 @@ def measured_of(data: xr.Dataset, name: str = "data") -> Measured:
         f"{name}.time",
         f"{name}.uncertainty",
     )
-    gravity, drop, drag, contact = setting_of(name, data)
+    gravity, drop, drag, contact, clock = setting_of(name, data)
     falls = int(data["impact"][0]) == 0
-    return measured(times, errors, gravity, drop if falls else None, drag, contact, f"{name}.time")
+    return measured(times, errors, gravity, drop if falls else None, drag, contact, clock, f"{name}.time")
 
 
 def chain(given: Measured) -> Chain:
@@ -172,6 +175,7 @@ def chain(given: Measured) -> Chain:
         matrix[rows, n] = by[1]
         matrix[rows, n + 2] = by[2]
         matrix[rows, n + 3] = -by[0] * delay
+        matrix[rows, n + 4] = by[0] * intervals
     if landing is not None:
         before[0] = landing.speed
         before_by[0, n : n + 3] = landing.by

@@ -46,13 +46,12 @@ KNOWN = Separation(0.0, 0.0, "")
 def separation(experiments: list[Measured]) -> Separation:
     """Separate errors of times that came without an uncertainty from a scatter of ε.
 
-    The first impact after a drop of uncertain height says nothing about either.
+    The first impact after a drop depends on its height and on g, and is left out.
     """
     links = joined(experiments, None)
     ratio = links.after / links.before
-    drops = slice(-len(experiments), None)
-    known = np.isfinite(ratio) & (links.before_by[:, drops] ** 2 @ links.variances[drops] == 0.0)
-    times = ratio.size
+    times, drops = ratio.size, slice(-len(experiments), None)
+    known = np.isfinite(ratio) & ~np.any(links.before_by[:, drops], axis=1)
     slopes = links.after_by[known, :times] - ratio[known, None] * links.before_by[known, :times]
     return separated(links.before[known], ratio[known], slopes / links.before[known, None])
 

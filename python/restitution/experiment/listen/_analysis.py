@@ -19,7 +19,6 @@ from restitution._internal.parameters import (
     Allowed,
     Number,
     ParameterError,
-    Parameters,
     Problem,
     TooLargeError,
     wrong,
@@ -28,6 +27,7 @@ from restitution._internal.text import digits, with_error
 from restitution.bodies import Wall, from_roundness
 from restitution.experiment.flight.chain import measured_of
 from restitution.experiment.flight.separation import KNOWN, Separation, separation
+from restitution.experiment.flight.setting import Gravity
 from restitution.experiment.flight.times import DOUBLED, DOUBTFUL, FLAGS, GOOD
 from restitution.experiment.listen._shape import Shape, shape
 from restitution.experiment.sound import impacts
@@ -63,7 +63,7 @@ _CONTACT_OR_NONE = Allowed("a finite number >= 0 (s), or None")
 _TIME_OR_NONE = Allowed("a finite number > 0 (s), or None")
 
 
-class Setting(Parameters):
+class Setting(Gravity):
     """Knowledge of the experiment besides the recording.
 
     Parameters
@@ -77,7 +77,10 @@ class Setting(Parameters):
     time_uncertainty : float, optional
         Standard error of the times of a table that does not give it, in s.
     gravity, gravity_uncertainty : float
-        g and its standard error, in m/s²: 3e-3 of g covers the surface of the Earth, 9.78 to 9.83.
+        g and its standard error, in m/s²; left out 3e-3 of g, which covers the surface of the Earth, 9.78 to
+        9.83.
+    clock_uncertainty : float
+        Standard error of the clock over what it shows.
     out_of_roundness, roughness : float, optional
         Of the ball, the second as Ra, in m, where they were measured.
     wall : float, optional
@@ -94,8 +97,6 @@ class Setting(Parameters):
     drop: Annotated[Number | None, Field(gt=0, description="m"), _OR_NONE] = None
     drop_uncertainty: Annotated[Number, Field(ge=0, description="m")] = 0.0
     time_uncertainty: Annotated[Number | None, Field(gt=0, description="s"), _TIME_OR_NONE] = None
-    gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
-    gravity_uncertainty: Annotated[Number, Field(ge=0, description="m/s²")] = 0.03
     out_of_roundness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
     roughness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
     wall: Wall = None
@@ -307,6 +308,7 @@ class Analysis(Content):
         table["restitution_covariance"] = (("impact", "other_impact"), covariance, {"units": "1"})
         known = {name: value for name, value in self.setting.model_dump().items() if value is not None}
         table.attrs |= known | {"doubtful": int(self.setting.doubtful)}
+        table.attrs["gravity_uncertainty"] = self.setting.gravity_error
         return table
 
     def csv(self) -> str:
@@ -485,6 +487,7 @@ def _coefficients(rows: xr.Dataset, setting: Setting, *, first: bool) -> xr.Data
         rows,
         gravity=setting.gravity,
         gravity_uncertainty=setting.gravity_uncertainty,
+        clock_uncertainty=setting.clock_uncertainty,
         # The drop is that of the first series of a file; another one made the others.
         drop_height=setting.drop if first else None,
         drop_height_uncertainty=setting.drop_uncertainty,

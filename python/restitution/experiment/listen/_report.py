@@ -98,7 +98,8 @@ def _page(analysis: Analysis) -> str:
 def _recording(given: Recording, setting: Setting) -> list[str]:
     rows = [
         ["diameter", f"{1e3 * setting.diameter:g} mm"],
-        ["gravity", f"{with_error(setting.gravity, setting.gravity_uncertainty)} m/s²"],
+        ["gravity", f"{with_error(setting.gravity, setting.gravity_error)} m/s²"],
+        ["clock", f"right to {setting.clock_uncertainty:g} of what it shows"],
     ]
     if setting.wall is not None:
         rows.append(["wall", f"{1e3 * setting.wall:g} mm"])

@@ -106,6 +106,7 @@ def shape(
             timing=float(np.nanmedian(data.uncertainty)),
             gravity=float(data.attrs["gravity"]),
             gravity_uncertainty=float(data.attrs["gravity_uncertainty"]),
+            clock_uncertainty=float(data.attrs["clock_uncertainty"]),
             drop_uncertainty=float(data.attrs.get("drop_height_uncertainty", 0.0)),
             drag=drag,
             drag_corrected=drag is not None,
