@@ -11,7 +11,7 @@ JOBS ?= 2
 ELSEWHERE := --exclude 'tests/(manual|reference/(environments|processes)|cli/test_environments)'
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
-.PHONY: help install quick minimum sdist crate release pages paper rough calibrate slow onsets test fuzz hostile audit mutants test-arm test-web rust-tests test-rust bench-web look web docs wheel licences coverage lint lint-rust lint-python bench clean
+.PHONY: help install quick minimum sdist crate release pages paper rough gas calibrate slow onsets test fuzz hostile audit mutants test-arm test-web rust-tests test-rust bench-web look web docs wheel licences coverage lint lint-rust lint-python bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 12
@@ -28,6 +28,9 @@ paper: $(STAMP)  ## redraw and judge the whole paper into $(OUT)/
 
 rough: $(STAMP)  ## simulate and judge rough spheres into rough/
 	$(BIN)/restitution rough --overwrite --out rough
+
+gas: $(STAMP)  ## figures and report of gases of grains into gas/
+	$(BIN)/restitution gas-figures --overwrite --out gas
 
 calibrate: $(STAMP)  ## 120 synthetic experiments: do posteriors cover? Some minutes on one core
 	$(BIN)/python -m benchmarks.calibration build/calibration
@@ -177,5 +180,5 @@ coverage: $(STAMP)  ## lines that the tests reach, in Python and in Rust, into b
 	cargo llvm-cov --package restitution-core --locked --html --output-dir build/coverage/rust
 
 clean:  ## remove everything that was built
-	rm -rf $(VENV) target build dist rough web/node_modules web/shots
+	rm -rf $(VENV) target build dist rough gas web/node_modules web/shots
 	git clean -fqdX paper

@@ -58,6 +58,16 @@ def gas(body: Any, law: Any, particles: int, seed: int) -> int:
     return round(float(data["collisions"][-1]) * particles / 2)
 
 
+def numba_pairs(body: Any, law: Any, encounters: int, seed: int) -> int:
+    """Follow the encounters of dumbbells in units of their radius and mass, by a plain loop in Numba."""
+    from benchmarks.peers.numba_pairs import run
+
+    radius = body.radii[0]
+    inertia = body.transverse_inertia / (body.mass * radius**2)
+    run(encounters, 0.5 * body.separation / radius, inertia, law.normal, np.random.default_rng(seed))
+    return encounters
+
+
 def rows() -> list[Row]:
     """Make all rows."""
     ball = rs.Dumbbell(radius=3e-3, separation=0.0)
@@ -66,6 +76,7 @@ def rows() -> list[Row]:
     box = rs.Box(a=4e-3, b=5e-3, c=6e-3)
     return [
         Row("encounters: dumbbells L/R = 1", partial(pairs, dumbbell, smooth), 1000.0),
+        Row("encounters: dumbbells L/R = 1, Numba", partial(numba_pairs, dumbbell, smooth), 1000.0),
         Row("encounters: dumbbells, Coulomb", partial(pairs, dumbbell, sticky), 2000.0),
         Row("encounters: spheroids 2:1", partial(pairs, spheroid(2.0), smooth), 4000.0),
         Row("encounters: clumps of 4", partial(pairs, clump(4), smooth), 5000.0),

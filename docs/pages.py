@@ -19,7 +19,7 @@ import re
 import sys
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -142,18 +142,33 @@ def laws(contacts: int, images: Path | None) -> str:
 
 
 def gas(particles: int, images: Path | None) -> str:
-    """Make the tables and figures of the four scripts of gases."""
-    share = 1.0 if images else 0.02
-    tables = []
-    for name, few in (("gas", 1), ("gas_of_spheres", 2)):
-        script = _script(name)
-        gases = script.measure(particles // few, share)
-        _draw(script, gases, images, name)
-        tables.append(script.table(gases))
-    friction, literature = _script("gas_friction"), _script("gas_literature")
-    tables.append(friction.table(particles, share * friction.COLLISIONS))
-    tables.append(literature.table(particles, share))
-    return "\n\n".join(tables)
+    """Make the tables and figures of `restitution gas-figures`, and its claims with their verdicts."""
+    gases, prose = (
+        import_module("restitution.papers.gases"),
+        import_module("restitution.figures.report").prose,
+    )
+    paper = gases.PAPER
+    settings = replace(paper.settings, share=1.0 if images else 0.02)
+    found = paper.simulate(settings, particles, import_module("restitution.papers.runs").Runner(1))
+    for figure, name in zip(paper.figures, GASES, strict=True):
+        _draw(figure, figure.reduce(found, settings), images, name)
+    tables = [(heads, rows) for _, heads, rows in gases.tables(found, settings)]
+    said = [
+        (f"“{claim.quote}” {claim.where}", claim.finding.why, claim.finding.verdict)
+        for claim in paper.claims.judge(found, settings)
+    ]
+    tables.append((("statement", "here", "verdict"), said))
+
+    def line(cells: tuple[str, ...]) -> str:
+        return f"| {' | '.join(prose(cell).replace('|', '&#124;') for cell in cells)} |"
+
+    return "\n\n".join(
+        "\n".join([line(heads), "|---" * len(heads) + "|", *map(line, rows)]) for heads, rows in tables
+    )
+
+
+GASES = ("gas", "gas_ratios", "gas_of_spheres", "gas_friction")
+"""Figures of the page of gases."""
 
 
 def pairs(encounters: int, images: Path | None) -> str:
@@ -200,7 +215,7 @@ BLOCKS = {
     "dice": Block(dice, 1000, 5, ("dice.png",)),
     "energy": Block(energy, 10_000_000, 20_000, ("laws.png",)),
     "fits": Block(fits, 4000, 100),
-    "gas": Block(gas, 20_000, 80, ("gas.png", "gas_of_spheres.png")),
+    "gas": Block(gas, 10_000, 100, tuple(f"{name}.png" for name in GASES)),
     "imperfections": Block(imperfections, 100, 4, ("imperfections.png",)),
     "laws": Block(laws, 0, 0),
     "names": Block(names, 0, 0),

@@ -259,7 +259,7 @@ def test_a_bad_distance_is_a_warning_and_a_status(tmp_path: Path) -> None:
     assert (quiet.exit_code, quiet.stdout, quiet.stderr) == (WARNED, "", result.stderr)
 
 
-@pytest.mark.parametrize("command", ["paper", "rough", "laws"])
+@pytest.mark.parametrize("command", ["paper", "rough", "gas-figures", "laws"])
 def test_folders_with_something_in_them_are_left_alone(command: str, tmp_path: Path) -> None:
     (tmp_path / "mine").write_text("x", encoding="utf-8")
     result = invoke(command, "--out", tmp_path)

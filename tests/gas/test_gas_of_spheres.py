@@ -1,12 +1,9 @@
-"""examples/gas_of_spheres.py: Haff's law, the shape of the velocity distribution, and recorded encounters.
+"""Gases of spheres that draw ε: Haff's law, the shape of the velocity distribution, recorded encounters.
 
 Standard errors are over independent gases; seeds are fixed. Four standard errors of twelve gases, Student's t
 with eleven degrees of freedom, would raise a false alarm in two of a thousand comparisons.
 """
 
-import importlib.util
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -15,27 +12,17 @@ from scipy import optimize
 
 import restitution as rs
 from reference.sonine import sonine
+from restitution.papers.gases import _spheres as spheres
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "gas_of_spheres.py"
+THETA = 0.5
+"""θ at the beginning, in m²/s²."""
 TIMES = np.linspace(0.0, 30.0, 31)
 
 
-@pytest.fixture(scope="module")
-def example() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("gas_of_spheres", EXAMPLE)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def replicas(
-    example: ModuleType, epsilon: Any, theta: float, collisions: float, number: int = 12
-) -> list[Any]:
+def replicas(epsilon: Any, theta: float, collisions: float, number: int = 12) -> list[Any]:
     """Independent gases of 4000 particles."""
-    rule = example.along(epsilon)
-    return [example.cool(rule, theta, collisions, seed, 4000) for seed in range(number)]
+    rule = spheres.along(epsilon)
+    return [spheres.cool(rule, theta, collisions, seed, 4000) for seed in range(number)]
 
 
 def haff(time: Any, epsilon: float) -> Any:
@@ -48,12 +35,12 @@ def mean_and_error(values: Any) -> tuple[float, float]:
     return float(x.mean()), float(x.std(ddof=1) / np.sqrt(x.size))
 
 
-def test_haffs_law_with_its_closed_form_rate(example: ModuleType) -> None:
+def test_haffs_law_with_its_closed_form_rate() -> None:
     """Constant ε = 0.9: the fitted exponent is 2 and the fitted rate that of van Noije and Ernst; a2 as well.
 
     Steps of a fiftieth of a collision shift the rate by less than 0.2 %, added to four standard errors.
     """
-    gases = replicas(example, lambda v, theta, rng: 0.9, 1.0, 26.0)
+    gases = replicas(lambda v, theta, rng: 0.9, 1.0, 26.0)
     rate = (1.0 - 0.81) / 6.0 * (1.0 + 3.0 / 16.0 * sonine(0.9))
     fits = []
     for time, _, theta, *_ in gases:
@@ -73,8 +60,8 @@ def test_haffs_law_with_its_closed_form_rate(example: ModuleType) -> None:
     assert haff(TIMES, 0.9)[-1] == pytest.approx((1 + rate * 30) ** -2)
 
 
-def test_elastic_gases_keep_their_temperature_and_shape(example: ModuleType) -> None:
-    gases = replicas(example, lambda v, theta, rng: 1.0, 2.0, 10.0, number=4)
+def test_elastic_gases_keep_their_temperature_and_shape() -> None:
+    gases = replicas(lambda v, theta, rng: 1.0, 2.0, 10.0, number=4)
     for time, _, theta, *_ in gases:
         np.testing.assert_allclose(theta, 2.0, rtol=1e-12)
         np.testing.assert_allclose(np.diff(time), 1.0, rtol=1e-12)  # ν is that of the Gaussian
@@ -82,37 +69,37 @@ def test_elastic_gases_keep_their_temperature_and_shape(example: ModuleType) -> 
     assert abs(a2) < 0.01  # 44 values that scatter by 0.73/√4000 each, not all independent
 
 
-def test_only_the_mean_square_cools(example: ModuleType) -> None:
+def test_only_the_mean_square_cools() -> None:
     """ε uniform on [-0.2, 1.4] at any speed: Haff's law with √<ε²>, but for 3 a2/16 in the rate, below 2 %.
 
     Negative ε and ε > 1 are in it; a constant <ε> = 0.6 would cool faster by half.
     """
     square = 0.36 + 1.6**2 / 12.0
-    gases = replicas(example, lambda v, theta, rng: rng.uniform(-0.2, 1.4, v.size), 1.0, 12.0, number=6)
+    gases = replicas(lambda v, theta, rng: rng.uniform(-0.2, 1.4, v.size), 1.0, 12.0, number=6)
     slopes = [np.polyfit(time[3:], theta[3:] ** -0.5, 1)[0] for time, _, theta, *_ in gases]
     assert np.mean(slopes) == pytest.approx((1.0 - square) / 6.0, rel=0.02)
     assert (1.0 - 0.36) / (1.0 - square) > 1.49
 
 
-def test_collisions_are_those_of_kinetic_theory(example: ModuleType) -> None:
+def test_collisions_are_those_of_kinetic_theory() -> None:
     """In an elastic gas a particle has ν0 t of them."""
-    gases = replicas(example, lambda v, theta, rng: 1.0, 1.0, 10.0, number=4)
+    gases = replicas(lambda v, theta, rng: 1.0, 1.0, 10.0, number=4)
     met = np.mean([gas.collisions[-1] / gas.time[-1] for gas in gases])
     assert met == pytest.approx(1.0, abs=4 / np.sqrt(4 * 4000 * 10 / 2))
 
 
-def test_recorded_encounters_cool_as_the_grains_do(example: ModuleType) -> None:
+def test_recorded_encounters_cool_as_the_grains_do() -> None:
     """Both temperatures of dumbbells L/R = 0.3 after 8 collisions, which take 0.35 of T_tr.
 
     4000 particles scatter by √(2/3·4000) = 1.3 % in each temperature, and 20 000 grains by half of it.
     """
     law, collisions = rs.Frictionless(normal=0.9), 8.0
-    body = rs.Dumbbell(radius=example.RADIUS, separation=0.3 * example.RADIUS)
-    warm = body.mass * example.THETA
+    body = rs.Dumbbell(radius=3e-3, separation=0.9e-3)
+    warm = body.mass * THETA
     exact = rs.gas.cool(body, law, particles=20_000, collisions=collisions, translational_temperature=warm)
-    gas = example.cool(
-        example.scaled(body, law, example.met(body, law, 6000), 6000)["kernel"],
-        example.THETA,
+    gas = spheres.cool(
+        spheres.scaled(body, law, spheres.met(body, law, 6000, THETA), 6000, THETA)["kernel"],
+        THETA,
         collisions,
         1,
         4000,
@@ -120,5 +107,5 @@ def test_recorded_encounters_cool_as_the_grains_do(example: ModuleType) -> None:
     for found, name in ((gas.theta, "translational_temperature"), (gas.rotation, "rotational_temperature")):
         expected = np.interp(collisions, exact["collisions"], np.log(exact[name] / warm))
         assert expected < -0.08
-        reached = np.interp(collisions, gas.collisions, np.log(found / example.THETA))
+        reached = np.interp(collisions, gas.collisions, np.log(found / THETA))
         assert reached == pytest.approx(expected, abs=4 * 0.014)

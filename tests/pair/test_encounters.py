@@ -263,3 +263,46 @@ def test_bad_states_are_named(changed: Any, name: Any) -> None:
 def test_bodies_that_are_not_followed_are_refused(body: Any) -> None:
     with pytest.raises(ValueError, match=r"^body = "):
         drawn(body.example())
+
+
+CAPSULE = rs.Spherocylinder(radius=0.5, separation=2.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "within", "exact"),
+    [
+        (dumbbell(0.1), (1.99875, 2.1), 36.0544825),
+        (dumbbell(1.0), (1.8708, 3.0), 61.2047854),
+        (CAPSULE, (1.0, 3.0), None),
+    ],
+    ids=["dumbbells 0.1", "dumbbells 1", "spherocylinders"],
+)
+@pytest.mark.parametrize("pairs", [200, pytest.param(10_000, marks=pytest.mark.slow)])
+def test_excluded_volume(body: Any, within: Any, exact: Any, pairs: int) -> None:
+    """The volume in which a centre makes two bodies overlap, averaged over attitudes.
+
+    All do that are nearer than the first of `within`, the square root of 4R² - L²/2 for dumbbells of balls of
+    radius R, L apart, because the mean square of the distances of their balls is r² + L²/2; none do farther
+    than the second. Of convex bodies it is V_A + V_B + S_A R_B + S_B R_A with the mean radii (A. Isihara, J.
+    Chem. Phys. 18, 1446 (1950); H. Hadwiger).
+    """
+    rng = np.random.default_rng(1)
+    inner, outer = (4 / 3 * np.pi * r**3 for r in within)
+    if exact is None:
+        area, radius = area_and_mean_radius(body)
+        exact = 2 * (body.mass / body.density) + 2 * area * radius
+    count = 0
+    for _ in range(pairs):
+        line = rng.normal(size=3)
+        line *= np.cbrt(rng.uniform(within[0] ** 3, within[1] ** 3)) / np.linalg.norm(line)
+        states = states_of(
+            position=np.array([[line, np.zeros(3)]]),
+            attitude=Rotation.random(2, rng=rng).as_quat(scalar_first=True)[np.newaxis],
+        )
+        try:
+            rs.pair.encounters(body, body, ELASTIC, states=states, threads=1)
+        except ValueError:
+            count += 1
+    share = count / pairs
+    found, error = inner + share * (outer - inner), (outer - inner) * np.sqrt(share * (1 - share) / pairs)
+    assert abs(found - exact) < 4 * error

@@ -58,13 +58,14 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "laws": ("laws --out laws --impacts 19680", "laws"),
     "paper": ("paper --out paper --impacts 400000", "paper"),
     "rough": ("rough --out rough --impacts 400000", "rough"),
+    "gas-figures": ("gas-figures --out gas --particles 1000", "gas"),
     "explore": ("explore run.toml --no-browser", ""),
     "sweep": ("sweep study.toml --out study.zarr", "study.zarr"),
     "sweep merge": ("sweep merge --out done.zarr", ""),
     "sweep status": ("sweep --status study.toml --out done.zarr", ""),
 }
 """Every command, small. `explore` ends by a signal alone."""
-LONG = {"paper", "rough"}
+LONG = {"paper", "rough", "gas-figures"}
 """Commands that take minutes, which only `make hostile` runs."""
 
 

@@ -194,7 +194,7 @@ turned, given, found = turned_axes(body, law), None, []
 course = dict(number_density=count / (side * side * side), uniform=False, batches=1, collisions=0.5, heating=0.0, keep=True, distributions=False, samples=1)
 for step in range(3):
     kind = (body.compiled, count, T, (${setup.temperature_ratio} * T,) * 3, turned)
-    (rows, given), _ = _core.cool([kind], law.compiled, course | {"seed": ${setup.seed} + step}, 1, given, None)
+    (rows, given, _), _ = _core.cool([kind], law.compiled, course | {"seed": ${setup.seed} + step}, 1, given, None)
     row = dict(zip([*_core.GAS_WHOLE, *_core.GAS_KIND], rows[0, 1]))
     energies = np.array([row[f"rotational_{axis}"] for axis in "xyz"])[list(turned)]
     found.append([given.ravel().tolist(), row["time"], 2 * row["collisions"] / count, 2 * row["contacts"] / count, body.mass * row["speed_squared"] / 3, 2 * energies.mean()])

@@ -1,13 +1,16 @@
 //! A gas that cools.
 
 use crate::bodies::Dropped;
-use crate::errors::python_error;
+use crate::errors::{python_error, unless};
 use crate::laws::Law;
 use crate::{resources, watch};
-use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
+use numpy::{
+    IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+};
 use pyo3::prelude::*;
 use restitution_core::gas::{BIN, BINS, GAS_KIND, GAS_WHOLE, Gas, Phase, STATE, Species};
 use restitution_core::pair::Partner;
+use restitution_core::{collected, copied};
 
 /// Density, length, statistics and seed of a run.
 #[derive(FromPyObject)]
@@ -27,13 +30,18 @@ struct Course {
 /// A body, how many there are, their temperatures of translation and of rotation about each principal axis, and whether contacts turn them about it.
 type Counted<'py> = (Dropped<'py>, usize, f64, [f64; 3], [bool; 3]);
 
-type Tables<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray2<f64>>);
+type Tables<'py> = (
+    Bound<'py, PyArray3<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Option<Bound<'py, PyArray1<f64>>>,
+);
 
 /// Follows a gas, from the given states if there are any. Returns rows of `GAS_WHOLE` and, for each kind, `GAS_KIND` and the counts of
 /// both distributions if they are asked for, by batch and look, with the states of
-/// the particles at the end, and the `KeyboardInterrupt` that cut the run short, if any.
+/// the particles at the end, and the `KeyboardInterrupt` that cut the run short, if any. Where `store` is
+/// given it goes on from it, if it is not empty, and also returns what a later call goes on from.
 #[pyfunction]
-#[pyo3(signature = (kinds, law, course, threads, given, progress))]
+#[pyo3(signature = (kinds, law, course, threads, given, progress, store = None))]
 fn cool<'py>(
     py: Python<'py>,
     kinds: Vec<Counted<'py>>,
@@ -42,6 +50,7 @@ fn cool<'py>(
     threads: usize,
     given: Option<PyReadonlyArray2<'py, f64>>,
     progress: Option<Bound<'py, PyAny>>,
+    store: Option<PyReadonlyArray1<'py, f64>>,
 ) -> PyResult<(Tables<'py>, Option<PyErr>)> {
     let of = |(body, ..): &Counted<'_>| Partner::new("body", body.body());
     let bodies: Vec<Partner> = kinds
@@ -82,13 +91,34 @@ fn cool<'py>(
         samples: course.samples,
         seed: course.seed,
     };
+    let size = gas.stored() * gas.batches;
+    let mut store = match &store {
+        Some(store) if store.len()? > 0 => {
+            unless(
+                store.len()? == size,
+                "checkpoint",
+                store.len()?,
+                "of this gas",
+            )?;
+            Some(copied("checkpoint", store.as_slice()?).map_err(python_error)?)
+        }
+        Some(_) => {
+            Some(collected("checkpoint", std::iter::repeat_n(0.0, size)).map_err(python_error)?)
+        }
+        None => None,
+    };
     let (law, resources) = (law.law(), resources(threads)?);
-    let ((rows, states), interrupted) =
-        watch::run(py, progress, |monitor| gas.cool(&law, resources, monitor))?;
+    let ((rows, states), interrupted) = watch::run(py, progress, |monitor| {
+        gas.cool(&law, resources, monitor, store.as_deref_mut())
+    })?;
     let shape = [course.batches, course.samples + 1, gas.width()];
     let states = states.into_flattened().into_pyarray(py);
     let states = states.reshape([states.len()? / STATE, STATE])?;
-    Ok(((rows.into_pyarray(py).reshape(shape)?, states), interrupted))
+    let store = store.map(|store| store.into_pyarray(py));
+    Ok((
+        (rows.into_pyarray(py).reshape(shape)?, states, store),
+        interrupted,
+    ))
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -45,7 +45,7 @@ pub fn cool(run: &Run<'_>, start: &[f64; NUMBERS], states: &[f64]) -> Result<Vec
         samples: 1,
         seed: run.seed + step as u64,
     };
-    let (rows, last) = gas.cool(&run.law, here(), &Monitor::default())?;
+    let (rows, last) = gas.cool(&run.law, here(), &Monitor::default(), None)?;
     let mut made = drawn_as(&body);
     for row in rows.chunks(GAS_WHOLE.len() + GAS_KIND.len()) {
         let (whole, kind) = row.split_at(GAS_WHOLE.len());

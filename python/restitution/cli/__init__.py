@@ -70,6 +70,7 @@ _EXAMPLES: dict[Callable[..., None], str] = {
     _pages.laws: "restitution laws --out laws",
     _pages.paper: "restitution paper --out paper",
     _pages.rough: "restitution rough --out rough",
+    _pages.gas_figures: "restitution gas-figures --out gas",
     _explore.explore: "restitution explore run.toml",
 }
 for command, example in _EXAMPLES.items():

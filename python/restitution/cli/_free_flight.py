@@ -23,7 +23,15 @@ _Moments = Annotated[
     typer.Option("--record", metavar="WHAT", help='"moments", or "state": also each particle at the end.'),
 ]
 
-_BESIDES = ("body", "other", "law", "state", "states", "record", "threads", "progress")
+_Checkpoint = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Keep there, as netCDF, how far the run has come; the same command goes on from it.",
+    ),
+]
+
+_BESIDES = ("body", "other", "law", "state", "states", "record", "threads", "progress", "checkpoint")
 """Arguments that have tables or options of their own, or none."""
 
 
@@ -95,6 +103,7 @@ def gas(
     run: RunFile,
     out: Out,
     record: _Moments = "moments",
+    checkpoint: _Checkpoint = None,
     threads: Threads = None,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
@@ -109,7 +118,8 @@ def gas(
     with errors_in_a_line("netCDF4"):
         import restitution as rs
 
-        options = {"record": record, "threads": threads, "progress": progress(quiet)}
+        options: dict[str, Any] = {"record": record, "threads": threads, "progress": progress(quiet)}
+        options["checkpoint"] = checkpoint
         summary = partial(_gas, quiet=quiet)
         _written("gas", rs.gas.cool, run, out, options, summary, overwrite=overwrite)
 

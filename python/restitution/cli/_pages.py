@@ -1,4 +1,4 @@
-"""`restitution paper`, `rough` and `laws`: figures, data and reports in a folder."""
+"""`restitution paper`, `rough`, `gas-figures` and `laws`: figures, data and reports in a folder."""
 
 from typing import Annotated
 
@@ -59,6 +59,31 @@ def rough(
         from restitution.papers.gunkelmann2014 import redraw
 
         report = redraw(out, impacts, seed, threads, progress(quiet), overwrite=overwrite)
+        if not quiet:
+            say(str(report))
+
+
+def gas_figures(
+    out: Folder,
+    particles: Annotated[
+        int, typer.Option(metavar="N", help="Particles in each gas; at least 100.")
+    ] = 10_000,
+    seed: Annotated[int, typer.Option(metavar="S", help="Seed of the random numbers, in [0, 2**64).")] = 1,
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Follow gases of aspherical grains and check what is published of them.
+
+    Writes four figures as PNG and PDF, the data behind each as netCDF, and one
+    HTML page that needs nothing else: two-stage cooling beside kinetic theory,
+    the limit of round grains, spheres that draw their restitution, friction, and
+    every claim with the measured number, its standard error and a verdict.
+    """
+    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
+        from restitution.papers.gases import redraw
+
+        report = redraw(out, particles, seed, threads, progress(quiet), overwrite=overwrite)
         if not quiet:
             say(str(report))
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
+import os
+import time
 import warnings
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -12,7 +16,10 @@ import xarray as xr
 
 from restitution import _core
 from restitution._internal.arrays import FloatArray, IntArray, positive, real, whole
+from restitution._internal.datasets import load, save
+from restitution._internal.files import NETCDF, check, path_for, there
 from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.process import undisturbed
 from restitution._internal.resources import check_memory, checked_threads, progress_bar
 from restitution.bodies import AnyBody, Body, RigidBody
 from restitution.drop.dataset import made_here
@@ -29,8 +36,20 @@ _PARTICLE = 96
 _WARM = "a finite number >= 0 (J)"
 
 
+_EACH = 60.0
+"""Seconds between two states of a run that are kept in its checkpoint."""
+_FAINT = -960
+"""Power of two below which temperatures in J would soon be no normal numbers."""
+_STEP = 200
+"""Powers of two by which velocities are told greater at once."""
+
+
+class _Pause(KeyboardInterrupt):
+    """A run stops to keep how far it has come, and goes on."""
+
+
 class GasWarning(UserWarning):
-    """Encounters of a gas created energy, or ended as a collapse.
+    """Encounters of a gas created energy or ended as a collapse, or it is colder than numbers can say.
 
     Examples
     --------
@@ -74,6 +93,7 @@ def cool(
     seed: int = 1,
     threads: int | None = None,
     progress: bool = False,
+    checkpoint: str | os.PathLike[str] | None = None,
 ) -> xr.Dataset:
     """Follow a homogeneous gas of bodies that collide with each other, without gravity.
 
@@ -132,6 +152,10 @@ def cool(
         At most one for each batch; one for each core if left out.
     progress : bool
         Show a progress bar on standard error.
+    checkpoint : path, optional
+        A netCDF file that keeps how far the run has come, written every minute, at its end and when Ctrl-C
+        ends it. The same call goes on from there, with any number of threads, and gives the same bits as one
+        that was never interrupted. It takes 200 bytes a particle in memory, too.
 
     Returns
     -------
@@ -147,18 +171,23 @@ def cool(
         up to 6; a Maxwellian has 2(f/2)^(f/2)/Γ(f/2) x^(f - 1) exp(-fx²/2), f = 3 for the first. Over
         ``time`` alone, since the beginning: ``collisions`` and ``contacts`` of a particle, ``attempts``
         (pairs that came within reach) and ``created_energy`` a particle, in J. Each has a standard error
-        ``..._error``. Attributes have the parameters, the share of collisions that created energy and of
+        ``..._error``. Hard contacts have no scale of time: a gas whose temperatures would be no normal
+        numbers goes on with greater velocities, and ``velocity_exponent`` over ``time``, which there is only
+        then, has the power k of two by which they are too great; temperatures are 4^k times too great.
+        Attributes have the parameters, the share of collisions that created energy and of
         those that ended as a collapse.
 
     Raises
     ------
     ValueError
-        Naming the argument, its value and what is allowed.
+        Naming the argument, its value and what is allowed; also if rotation becomes so much hotter than
+        translation that encounters take too many turns, or `checkpoint` is the file of another run.
 
     Warns
     -----
     GasWarning
-        If collisions created energy, or more than a hundredth ended as a collapse.
+        If collisions created energy, with the rate at which it heats, or more than a hundredth ended as a
+        collapse, or if temperatures became smaller than the smallest normal numbers.
 
     Examples
     --------
@@ -207,15 +236,9 @@ def cool(
         if kind.particles < 2 * number:
             raise ParameterError(wrong("particles", kind.particles, f">= {2 * number}, 2 for each batch"))
     total = sum(kind.particles // number * number for kind in kinds)
-    check_memory(total, _PARTICLE * (2 if record == "state" else 1))
-    rows = [(kind.body.compiled, *kind[1:]) for kind in kinds]
-    expected = round(course["collisions"] * total / 2)
-    with progress_bar("gas", expected, "collisions", show=progress) as tell:
-        (table, last), interrupted = _core.cool(
-            rows, law.compiled, course, checked_threads(threads), given, tell
-        )
-    if interrupted:
-        raise interrupted
+    path = None if checkpoint is None else path_for("checkpoint", checkpoint, NETCDF)
+    check_memory(total, _PARTICLE * (1 + (record == "state") + 2 * (path is not None)))
+    table, last = _follow(kinds, law, course, checked_threads(threads), given, path, show=progress)
     data = _dataset(kinds, table, total)
     if record == "state":
         data = data.assign(_state(kinds, last, number))
@@ -232,6 +255,59 @@ def cool(
         data = data.isel(species=0)
     _warn(data)
     return data
+
+
+def _follow(
+    kinds: Sequence[_Kind],
+    law: CollisionLaw,
+    course: dict[str, Any],
+    threads: int,
+    given: FloatArray | None,
+    path: Path | None,
+    *,
+    show: bool,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the looks at a gas and its last states; what `path` keeps is gone on from."""
+    total = sum(kind.particles // course["batches"] * course["batches"] for kind in kinds)
+    rows = [(kind.body.compiled, *kind[1:]) for kind in kinds]
+    text = repr((made_here("")["version"], [(str(kind.body), *kind[1:]) for kind in kinds], str(law), course))
+    mark = hashlib.sha256(text.encode() + (b"" if given is None else given.tobytes())).hexdigest()
+    store = None if path is None else _kept(path, mark)
+    expected = round(course["collisions"] * total / 2)
+    with progress_bar("gas", expected, "collisions", show=show) as tell:
+        while True:
+            began = time.monotonic()
+
+            def watch(done: int, end: float = began + _EACH) -> None:
+                if tell is not None:
+                    tell(done)
+                if done < expected and time.monotonic() > end:
+                    raise _Pause
+
+            (table, last, store), interrupted = _core.cool(
+                rows, law.compiled, course, threads, given, tell if path is None else watch, store
+            )
+            if path is not None:
+                about = {"restitution_gas": mark, "title": "How far a gas has come, for restitution.gas.cool"}
+                with undisturbed():  # a signal would leave netCDF locked
+                    save(xr.Dataset({"store": ("number", store)}, attrs=about), path, replace=True)
+            if interrupted is None:
+                return table, last
+            if not isinstance(interrupted, _Pause):
+                raise interrupted
+
+
+def _kept(path: Path, mark: str) -> FloatArray:
+    """Return how far the run of this mark has come, nothing at first."""
+    if not there(path):
+        check(path, replace=False)
+        return np.empty(0)
+    data = load(path)
+    if data.attrs.get("restitution_gas") != mark:
+        allowed = "a new file, or that of the same run: with the same arguments, by the same version"
+        raise ParameterError(wrong("checkpoint", str(path), allowed))
+    store: FloatArray = data["store"].to_numpy()
+    return store
 
 
 def _bodies(body: Any) -> list[Any]:
@@ -350,18 +426,23 @@ def _dataset(kinds: Sequence[_Kind], table: FloatArray, total: int) -> xr.Datase
 
     def put(name: str, values: FloatArray, dims: tuple[str, ...], text: str, unit: str) -> None:
         """Take the mean over batches, the first axis, and its standard error."""
-        error = values.std(axis=0, ddof=1) / math.sqrt(batches)
+        # Squares of small temperatures would be 0.
+        _, power = np.frexp(np.abs(values).max(axis=0))
+        error = np.ldexp(np.ldexp(values, -power).std(axis=0, ddof=1) / math.sqrt(batches), power)
         variables[name] = (dims, values.mean(axis=0), {"long_name": text, "units": unit})
         variables[f"{name}_error"] = (dims, error, {"long_name": f"standard error of {name}", "units": unit})
 
     for name, (text, unit) in _COUNTS.items():
         particles = 1.0 if name == "created_energy" else 2.0  # to which each belongs
         put(name, counts[name] * (particles / each), ("time",), text, unit)
+    exponent = counts["exponent"].astype(np.int64)
+    reported = _told(kinds, table, exponent)
     parts, counted = [], []
     own = np.split(table[..., len(_core.GAS_WHOLE) :], len(kinds), axis=-1)
     for kind, columns in zip(kinds, own, strict=True):
         means = columns[..., : len(_core.GAS_KIND)]
-        parts.append(_of_kind(kind, dict(zip(_core.GAS_KIND, np.moveaxis(means, -1, 0), strict=True))))
+        named = dict(zip(_core.GAS_KIND, np.moveaxis(means, -1, 0), strict=True))
+        parts.append(_of_kind(kind, named, exponent, reported))
         counted.append(_densities(kind, columns[..., len(_core.GAS_KIND) :], batches))
     for name, (text, unit) in _MEANS.items():
         values = np.stack([part[name] for part in parts], axis=1)
@@ -376,9 +457,12 @@ def _dataset(kinds: Sequence[_Kind], table: FloatArray, total: int) -> xr.Datase
             put(f"{name}_distribution", values, ("species", "time", dimension), f"density of {of}", "1")
             about = {"long_name": f"{of}, {text}", "units": "1"}
             coordinates[dimension] = (dimension, width * (np.arange(bins) + 0.5), about)
-    time = counts["time"].mean(axis=0)
+    if reported.any():
+        text = "power of two by which velocities are too great; temperatures by twice this"
+        variables["velocity_exponent"] = ("time", reported, {"long_name": text, "units": "1"})
+    times = counts["time"].mean(axis=0)
     coordinates |= {
-        "time": ("time", time, {"long_name": "time", "units": "s"}),
+        "time": ("time", times, {"long_name": "time", "units": "s"}),
         "axis": ("axis", ["first", "second", "third"], {"long_name": "principal axis"}),
     }
     data = xr.Dataset(variables, coordinates)
@@ -409,18 +493,36 @@ def _densities(kind: _Kind, counts: FloatArray, batches: int) -> FloatArray:
     return found
 
 
-def _of_kind(kind: _Kind, means: dict[str, FloatArray]) -> dict[str, FloatArray]:
-    """Return the variables of a species in every batch, shape (batch, time), or with the axes (..., 3)."""
+def _told(kinds: Sequence[_Kind], table: FloatArray, own: IntArray) -> IntArray:
+    """Return the power of two by which velocities are told too great; `own` is that of what was followed."""
+    first = len(_core.GAS_WHOLE) + _core.GAS_KIND.index("speed_squared")
+    squares = table[..., first :: (table.shape[-1] - len(_core.GAS_WHOLE)) // len(kinds)]
+    warm = np.log2(squares * [kind.body.mass / 3.0 for kind in kinds]).min(axis=-1) - 2.0 * own
+    steps = np.ceil(np.maximum(_FAINT - warm.min(axis=0), 0.0) / (2.0 * _STEP))
+    told: IntArray = _STEP * steps.astype(np.int64)
+    return told
+
+
+def _of_kind(
+    kind: _Kind, means: dict[str, FloatArray], own: IntArray, told: IntArray
+) -> dict[str, FloatArray]:
+    """Return the variables of a species in every batch, shape (batch, time), or with the axes (..., 3).
+
+    Velocities were followed, and are told, 2 to the power `own` and `told` too great, but for the spins of
+    bodies that contacts do not turn.
+    """
     mass, turned = kind.body.mass, np.array(kind.turned)
+    power = 2 * (told - own)
+    spins = power if turned.any() else 2 * told + 0 * own
     energies = np.stack([means[f"rotational_{axis}"] for axis in "xyz"], axis=-1)
     translational = mass * means["speed_squared"] / 3.0
     axes = int(turned.sum())
     rotation = (energies * turned).sum(axis=-1)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found = {
-            "translational_temperature": translational,
-            "rotational_temperature": 2.0 * rotation / axes,
-            "axis_temperature": 2.0 * energies,
+            "translational_temperature": np.ldexp(translational, power),
+            "rotational_temperature": np.ldexp(2.0 * rotation / axes, power),
+            "axis_temperature": np.ldexp(2.0 * energies, spins[..., np.newaxis]),
             "a20": mass**2 * means["speed_fourth"] / (15.0 * translational**2) - 1.0,
             "a02": means["rotational_squared"] / rotation**2 * (axes / (axes + 2.0)) - 1.0,
             "a11": means["mixed"] / (means["speed_squared"] * rotation) - 1.0,
@@ -431,8 +533,13 @@ def _of_kind(kind: _Kind, means: dict[str, FloatArray]) -> dict[str, FloatArray]
 def _warn(data: xr.Dataset) -> None:
     created, collapsed = data.attrs["energy_created_share"], data.attrs["collapse_share"]
     if created > 0.0:
+        each = 1.5 * data["translational_temperature"] + 0.5 * data["axis_temperature"].sum("axis")
+        if "species" in each.dims:
+            each = each.weighted(xr.DataArray(data.attrs["particles"], dims="species")).mean("species")
+        gained = (data["created_energy"].diff("time") / each).mean() * len(each)
         warnings.warn(
-            f"{created:.3g} of the collisions created energy: the law does this, and it heats the gas; "
+            f"{created:.3g} of the collisions created energy, in a collision of each particle "
+            f"{float(gained / data['collisions'][-1]):.2g} of what the gas has: the law does this; "
             "created_energy has how much",
             GasWarning,
             stacklevel=3,
@@ -441,6 +548,14 @@ def _warn(data: xr.Dataset) -> None:
         warnings.warn(
             f"{collapsed:.3g} of the collisions ended as a collapse, in which bodies stay together; they "
             "go on with the velocities that they had then",
+            GasWarning,
+            stacklevel=3,
+        )
+    if "velocity_exponent" in data:
+        warnings.warn(
+            "the gas has cooled below the smallest normal numbers: velocities at the end are "
+            f"2^{int(data['velocity_exponent'][-1])} times too great, and temperatures by the square of it; "
+            "velocity_exponent has the powers",
             GasWarning,
             stacklevel=3,
         )

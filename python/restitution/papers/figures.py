@@ -24,6 +24,12 @@ class Caption(NamedTuple):
 
     def parameters(self, about: dict[str, Any]) -> str:
         """Write whose each parameter is, and the run, from attributes as of `recorded` or `counted`."""
+        paper = f"Stated in the paper: {'; '.join(self.paper)}. " if self.paper else ""
+        run = f"{self.run(about)}; restitution {about['version']}"
+        return f"{paper}Our choice: {'; '.join(self.ours)}. Run: {run}."
+
+    def run(self, about: dict[str, Any]) -> str:
+        """Write the numbers of particles and impacts, and the seeds."""
         each = f" {self.each}" if self.each else ""
         impacts = about["impacts_counted" if "impacts_counted" in about else "impacts_recorded"]
         most = about["impacts"]
@@ -38,10 +44,7 @@ class Caption(NamedTuple):
             )
         seeds = ", ".join(map(str, about["seeds"]))
         order = "seed " + seeds if len(about["seeds"]) == 1 else f"seeds {seeds} in the order of the legend"
-        return (
-            f"Stated in the paper: {'; '.join(self.paper)}. Our choice: {'; '.join(self.ours)}. "
-            f"Run: {run}; {order}; restitution {about['version']}."
-        )
+        return f"{run}; {order}"
 
 
 def recorded(*runs: xr.Dataset) -> dict[str, Any]:

@@ -1,14 +1,16 @@
 """Description of a paper, from which it is redrawn and judged."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Generic
+
+import xarray as xr
 
 from restitution.figures.report import Section
 from restitution.papers.claims import Claims, R, S
 from restitution.papers.figures import PaperFigure
 from restitution.papers.misprints import Misprint
-from restitution.papers.runs import Runner
+from restitution.papers.runs import DROPPED, Runner
 
 
 @dataclass(frozen=True)
@@ -19,12 +21,25 @@ class Paper(Generic[R, S]):
     reference: str  # with DOI
     command: str  # that makes the report, without number of impacts and seed
     settings: S
-    least: int  # impacts to ask for at least
+    least: int  # of what `size` counts, to ask for at least
     number: int  # of runs that `simulate` makes
-    simulate: Callable[[S, int, Runner], R]  # from the settings, and the number of impacts asked for
+    simulate: Callable[[S, int, Runner], R]  # from the settings, and the number asked for
     about: Callable[[R], str]  # what was simulated, in a sentence or two
     columns: Mapping[str, Callable[[Mapping[str, Any]], str]]  # of the table of runs, from their attributes
     figures: Sequence[PaperFigure[R, S]]
     claims: Claims[R, S]
     misprints: Sequence[Misprint] = ()
     sections: Callable[[R, S], Sequence[Section]] = lambda runs, settings: ()  # that no other paper has
+    size: str = "impacts"  # what the number counts that one asks for
+    sizes: Mapping[str, Callable[[xr.Dataset], str]] = field(default_factory=lambda: DROPPED)  # of a run
+    errors: str = (
+        "Impacts of one particle are correlated, so each particle counts as one draw in every standard "
+        "error, "
+        "and p-values rest on at most one impact of each particle at a speed."
+    )
+    ends: str = (
+        "A trajectory that collapses has infinitely many impacts in finite time; it ends there and nothing "
+        "is "
+        "regularised. Counted impacts are not recorded; the recorded run consists of the first particles of "
+        "the run of the same seed."
+    )

@@ -35,7 +35,7 @@ def redraw(
         Folder for the report, the explorer that its figures are linked to, and for each figure its PNG, PDF,
         caption and data; made if it does not exist. Nothing appears there before all is done.
     impacts : int
-        Impacts to simulate, as the paper's `simulate` counts them.
+        Impacts to simulate, or what else `Paper.size` says, as the paper's `simulate` counts them.
     seed : int
         Seed that those of all runs derive from, in [0, 2⁶⁴).
     threads : int, optional
@@ -53,13 +53,13 @@ def redraw(
     Raises
     ------
     ValueError
-        If `impacts` or `seed` is out of range.
+        If the number or `seed` is out of range.
     OSError
         If `out` cannot be written to, or holds anything and is not to be overwritten; found out before
         anything is computed.
     """
     settings = paper.settings
-    impacts = whole("impacts", impacts, paper.least, 2**53)
+    impacts = whole(paper.size, impacts, paper.least, 2**53)
     seed = whole("seed", seed, 0, 2**64 - 1)
     checked_threads(threads)
     overwrite, progress = flag("overwrite", overwrite), flag("progress", progress)

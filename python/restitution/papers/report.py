@@ -1,13 +1,9 @@
 """The report on a redrawn paper: every claim with its numbers, every figure, misprint, parameter and run."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, get_args
 
-import numpy as np
-import xarray as xr
-
-from restitution._core import STOP_REASONS
 from restitution._internal.text import with_error
 from restitution.figures import report as html
 from restitution.figures.report import Section
@@ -15,7 +11,7 @@ from restitution.papers.claims import SIGNIFICANT, Claim, Measurement, R, S, Ver
 from restitution.papers.figures import SavedFigure
 from restitution.papers.misprints import Misprint
 from restitution.papers.paper import Paper
-from restitution.papers.runs import Runs, impacts_of, is_counted
+from restitution.papers.runs import Runs, is_counted
 from restitution.papers.settings import Settings
 
 _CLASSES: dict[str, str] = {
@@ -44,14 +40,14 @@ def report(
     """
     source = f"restitution {runs.version}"
     sections = [
-        Section("claims", "The claims of the paper, checked", [_summary(claims)]),
+        Section("claims", "The claims, checked", [_summary(claims)]),
         Section("figures", "The figures, redrawn", [_figure(figure, explorer) for figure in figures]),
-        Section("numbers", "The numbers behind each verdict", _details(claims)),
+        Section("numbers", "The numbers behind each verdict", _details(claims, paper.errors)),
         Section("misprints", "Misprints", _misprints(paper.misprints)),
         *paper.sections(runs, paper.settings),
         Section("parameters", "Parameters", _parameters(paper.settings)),
-        Section("runs", "Simulations", _simulations(runs, paper.columns)),
-        Section("reproduce", "How to reproduce this report", _reproduce(paper.command, runs, source)),
+        Section("runs", "Simulations", _simulations(runs, paper)),
+        Section("reproduce", "How to reproduce this report", _reproduce(paper, runs, source)),
         Section("cite", "How to cite", [_citation(paper.reference, runs)]),
     ]
     if not paper.misprints:
@@ -68,7 +64,7 @@ def _heading(paper: Paper[R, S], claims: Sequence[Claim], runs: R, source: str) 
     numbers = Counter(claim.finding.verdict for claim in claims)
     counts = "\n".join(_count(verdict, numbers[verdict]) for verdict in get_args(Verdict))
     about = (
-        f"{paper.about(runs)} Each of the {len(claims)} quantitative claims of the paper is compared with "
+        f"{paper.about(runs)} Each of the {len(claims)} quantitative claims is compared with "
         "the number measured here, with its standard error and a verdict by a stated rule. Made by "
         f"{source}, seed {runs.seed}."
     )
@@ -108,8 +104,8 @@ def _summary(claims: Sequence[Claim]) -> str:
         for claim in claims
     )
     return (
-        '<table class="summary"><caption>Claims in the order of the paper; each verdict links to its '
-        'numbers.</caption><thead><tr><th scope="col">The paper</th><th scope="col">What we find</th>'
+        '<table class="summary"><caption>Each verdict links to its numbers.</caption><thead><tr>'
+        '<th scope="col">The claim</th><th scope="col">What we find</th>'
         f'<th scope="col">Verdict</th></tr></thead><tbody>\n{rows}\n</tbody></table>'
     )
 
@@ -129,12 +125,11 @@ def _figure(saved: SavedFigure, explorer: str) -> str:
     )
 
 
-def _details(claims: Sequence[Claim]) -> list[str]:
+def _details(claims: Sequence[Claim], errors: str) -> list[str]:
     """Show every claim with its numbers and the rule of its verdict."""
     how = html.paragraph(
-        "Numbers are given ± one standard error. Impacts of one particle are correlated, so each particle "
-        "counts as one draw in every standard error, and p-values rest on at most one impact of each "
-        f"particle at a speed. A difference is significant from {SIGNIFICANT:g} standard errors; about one "
+        f"Numbers are given ± one standard error. {errors} A difference is significant from {SIGNIFICANT:g} "
+        "standard errors; about one "
         "report in a hundred then contains a spurious finding."
     )
     cards = (
@@ -239,45 +234,22 @@ def _plain(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _simulations(runs: Runs, columns: Mapping[str, Any]) -> list[str]:
-    """Tabulate every run, the recorded ones first: parameters, size, why trajectories ended, and seed."""
-    rows = []
+def _simulations(runs: R, paper: Paper[R, S]) -> list[str]:
+    """Tabulate every run, the recorded ones first: parameters, size, and seed."""
+    columns, rows = paper.columns, []
     for name, data in sorted(runs.all().items(), key=lambda run: is_counted(run[1])):
         parameters = [str(parameter(data.attrs)) for parameter in columns.values()]
-        sizes = [html.grouped(data.attrs["particles"]), html.grouped(impacts_of(data))]
-        rows.append(
-            [html.prose(c) for c in (name, *parameters, *sizes, _ended(data), str(data.attrs["seed"]))]
-        )
-    headers = ("run", *columns, "particles", "impacts", "trajectories ended", "seed")
-    numeric = [k for k in range(1, len(columns) + 3) if rows[0][k][0].isdigit()]
-    caption = "Simulations: size, seed, and why trajectories ended"
-    return [
-        html.paragraph(
-            "A trajectory that collapses has infinitely many impacts in finite time; it ends there and "
-            "nothing is regularised. Counted impacts are not recorded; the recorded run consists of the "
-            "first particles of the run of the same seed."
-        ),
-        html.table(headers, rows, caption=caption, numbers=numeric),
-    ]
+        sizes = [size(data) for size in paper.sizes.values()]
+        rows.append([html.prose(c) for c in (name, *parameters, *sizes, str(data.attrs["seed"]))])
+    headers = ("run", *columns, *paper.sizes, "seed")
+    numeric = [k for k in range(1, len(headers) - 1) if rows[0][k][0].isdigit()]
+    caption = f"Simulations: {', '.join(paper.sizes)}, and seed"
+    return [html.paragraph(paper.ends), html.table(headers, rows, caption=caption, numbers=numeric)]
 
 
-def _ended(data: xr.Dataset) -> str:
-    """Count the trajectories by the reason why they ended."""
-    numbers = (
-        data["particles_ended"].to_numpy()
-        if is_counted(data)
-        else np.bincount(data["stop_reason"].to_numpy(), minlength=len(STOP_REASONS))
-    )
-    return ", ".join(
-        f"{html.grouped(int(n))} {reason.replace('_', ' ')}"
-        for reason, n in zip(STOP_REASONS, numbers, strict=True)
-        if n
-    )
-
-
-def _reproduce(command: str, runs: Runs, source: str) -> list[str]:
+def _reproduce(paper: Paper[R, S], runs: R, source: str) -> list[str]:
     """Return the command that makes this report."""
-    line = f"{command} --impacts {runs.asked} --seed {runs.seed}"
+    line = f"{paper.command} --{paper.size} {runs.asked} --seed {runs.seed}"
     return [
         f'<pre tabindex="0"><code>{html.text(line)}</code></pre>',
         html.paragraph(

@@ -8,8 +8,10 @@ import numpy as np
 import xarray as xr
 
 import restitution as rs
+from restitution._core import STOP_REASONS
 from restitution.bodies import AnyBody
 from restitution.drop.energy import reported_elsewhere
+from restitution.figures.report import grouped
 from restitution.laws import Law
 
 T = TypeVar("T")
@@ -105,3 +107,25 @@ def impacts_of(data: xr.Dataset) -> int:
         return int(data["impacts"].sum())
     inside = data["number"].sum() + data["undefined"].sum()
     return int(inside + data["velocity_underflow"] + data["velocity_overflow"])
+
+
+def _ended(data: xr.Dataset) -> str:
+    """Count the trajectories by the reason why they ended."""
+    numbers = (
+        data["particles_ended"].to_numpy()
+        if is_counted(data)
+        else np.bincount(data["stop_reason"].to_numpy(), minlength=len(STOP_REASONS))
+    )
+    return ", ".join(
+        f"{grouped(int(n))} {reason.replace('_', ' ')}"
+        for reason, n in zip(STOP_REASONS, numbers, strict=True)
+        if n
+    )
+
+
+DROPPED: Mapping[str, Callable[[xr.Dataset], str]] = {
+    "particles": lambda data: grouped(data.attrs["particles"]),
+    "impacts": lambda data: grouped(impacts_of(data)),
+    "trajectories ended": _ended,
+}
+"""Columns of the size of a run of dropped particles."""

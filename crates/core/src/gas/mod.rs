@@ -18,7 +18,7 @@ use crate::contact::Between;
 use crate::law::Law;
 use crate::math::{Quaternion, Vector};
 use crate::pair::{
-    Draws, Ending, Following, FreeBody, PairState, Partner, approach, failed, normals,
+    Draws, Ending, Following, FreeBody, PairState, Partner, Trouble, approach, failed, normals,
 };
 use crate::random::{of_gas, of_impact};
 use crate::simd::Level;
@@ -38,10 +38,23 @@ const NOISE: f64 = 0.1;
 const DEVIATIONS: f64 = 7.0;
 /// Turns, on average, after which a phase counts as uniform.
 const TURNS: f64 = 1e4;
+/// The angle that is left out where a body turns by more.
+const LOST: f64 = 1e9;
 /// Temperatures over masses, and rates of collisions, that are followed.
 const MODERATE: RangeInclusive<f64> = 1e-75..=1e75;
 /// The largest T_rot/T_tr.
 const FASTEST: f64 = 1e6;
+/// Spins over velocities, in units of the reach, from which the search for contacts may need too many turns, from which it does, and from which those
+/// of balls, which need no search, are lost in rounding.
+const FAST_SPIN: f64 = 1e3;
+const FASTEST_SPIN: f64 = 1e6;
+const LOST_SPIN: f64 = 1e12;
+/// The largest velocity, in m/s, below which all are multiplied by 2 to the power [`LIFT`], so that fourth powers remain normal numbers. Hard contacts
+/// have no scale of time: nothing else changes.
+const FAINT: f64 = 6.3e-61;
+const LIFT: i32 = 200;
+/// The part of the largest speed down to which the rounding of momenta is left alone.
+const FAR: f64 = 1e-6;
 /// The energy of an encounter, relative to that before, above which it is created and not rounding.
 const CREATED: f64 = 1e-12;
 
@@ -114,8 +127,15 @@ impl Gas<'_> {
         GAS_WHOLE.len() + self.kinds.len() * (GAS_KIND.len() + counted)
     }
 
+    /// Numbers of `store` in [`Self::cool`], of each batch.
+    pub fn stored(&self) -> usize {
+        let heated = if self.heating > 0.0 { 1 } else { 0 };
+        NUMBERS + (self.samples + 1) * self.width() + self.each() * (ROTATION + 3 + heated)
+    }
+
     /// Follows all batches. Returns [`Self::width`] numbers of every look at each batch, and if they are kept
-    /// the states of all particles at the end, in the order of `given`; all zero after a run that was cancelled.
+    /// the states of all particles at the end, in the order of `given`; without meaning after a run that was cancelled. Where there is a `store`, of
+    /// [`Self::stored`] numbers for each batch, all zero at first, a batch goes on from what it left there when it was cancelled, to the same bits.
     ///
     /// # Errors
     /// [`Error::Parameter`], and if an encounter cannot be followed.
@@ -124,8 +144,11 @@ impl Gas<'_> {
         law: &Law<'_>,
         resources: Resources,
         monitor: &Monitor,
+        store: Option<&mut [f64]>,
     ) -> Result<(Vec<f64>, Vec<[f64; STATE]>), Error> {
         self.check()?;
+        let stores: Option<Vec<_>> =
+            store.map(|all| all.chunks_mut(self.stored()).map(Mutex::new).collect());
         let next = AtomicUsize::new(0);
         let size = (self.samples + 1) * self.width();
         let each = self.each();
@@ -140,14 +163,23 @@ impl Gas<'_> {
                     return Ok(());
                 }
                 let mut gas = Batch::new(self, batch)?;
-                let found = Level::run_scalar(FollowedGas {
+                let mut store = stores
+                    .as_ref()
+                    .map(|all| all[batch].lock().expect("nobody panics who holds it"));
+                if let Some(store) = &store {
+                    gas.restore(store);
+                }
+                Level::run_scalar(FollowedGas {
                     gas: &mut gas,
                     law,
                     monitor,
                 })?;
+                if let Some(store) = &mut store {
+                    gas.save(store);
+                }
                 let mut results = results.lock().expect("nobody panics who holds it");
                 let (rows, states) = &mut *results;
-                rows[batch * size..][..found.len()].copy_from_slice(&found);
+                rows[batch * size..][..gas.rows.len()].copy_from_slice(&gas.rows);
                 let kept = states.iter_mut().skip(batch * each);
                 for (i, state) in kept.take(each).enumerate() {
                     *state = joined(gas.free(i, Vector::default()).state(gas.kind(i).body));
@@ -222,11 +254,26 @@ struct Batch<'a> {
     /// The number behind the last particle of each kind.
     ends: Vec<usize>,
     clock: f64,
+    /// The time at which the clock was 0, and the power of two by which velocities were multiplied until then.
+    past: f64,
+    exponent: i32,
     whole: Whole,
     /// Draws so far.
     drawn: u64,
+    /// The majorant of u, the time until which it holds, and candidates since it was found.
+    fastest: f64,
+    until: f64,
+    since: usize,
+    /// The largest speed at which the velocity of the centre of mass is taken off again.
+    slowest: f64,
+    /// Looks so far.
+    rows: Vec<f64>,
     between: Vec<Between>,
 }
+
+/// Numbers of a batch in a store beside its looks and its particles, and of the rotation of a particle.
+const NUMBERS: usize = 9 + GAS_WHOLE.len() - 2;
+const ROTATION: usize = 8;
 
 impl<'a> Batch<'a> {
     /// Attitudes uniform on SO(3), velocities and ω of Maxwellians, of which the mean is taken off and whose energies are those of the temperatures.
@@ -276,8 +323,15 @@ impl<'a> Batch<'a> {
             heated: memory::zeros("times of heating", heated)?,
             ends,
             clock: 0.0,
+            past: 0.0,
+            exponent: 0,
             whole: Whole::default(),
             drawn: 0,
+            fastest: 0.0,
+            until: 0.0,
+            since: count,
+            slowest: 0.0,
+            rows: memory::empty("looks at a gas", (gas.samples + 1) * gas.width())?,
             between: memory::filled("parts of a pair", Between::default(), parts * parts)?,
         })
     }
@@ -298,7 +352,7 @@ impl<'a> Batch<'a> {
     }
 
     #[inline(always)]
-    fn run(&mut self, law: &Law<'_>, monitor: &Monitor) -> Result<Vec<f64>, Error> {
+    fn run(&mut self, law: &Law<'_>, monitor: &Monitor) -> Result<(), Error> {
         let gas = self.gas;
         let count = self.velocities.len();
         let each = 0.5 * count as f64 * gas.collisions / gas.samples as f64;
@@ -311,31 +365,30 @@ impl<'a> Batch<'a> {
         let pairs = count as f64 * (count - 1) as f64;
         let lightest = gas.kinds.iter().map(|kind| kind.body.inverse_mass);
         let noise = gas.noise(lightest.fold(0.0, f64::max));
-        let mut rows = Vec::new();
-        self.look(&mut rows);
-        let (mut fastest, mut until) = (0.0, 0.0);
-        let mut since = count;
-        let (mut looks, mut finished) = (1, 0);
+        if self.rows.is_empty() {
+            self.look();
+        }
+        let mut finished = self.whole.collisions as u64;
+        monitor.add_finished(finished);
+        let mut looks = self.rows.len() / gas.width();
         while looks <= gas.samples {
-            if since == count || self.clock > until {
-                self.heat_all();
-                let square = |v: &Vector| v.dot(*v);
-                let squares = self.velocities.iter().map(square);
-                let most = squares.fold(0.0, f64::max).sqrt();
-                (fastest, until) = (2.0 * ROOM * most, f64::INFINITY);
-                if gas.heating > 0.0 {
-                    fastest += 2.0 * NOISE * most;
-                    let deviation = NOISE * most / DEVIATIONS;
-                    until = self.clock + deviation * deviation / noise;
-                }
-                since = 0;
+            if self.since == count || self.clock > self.until {
                 if monitor.is_cancelled() {
-                    return Ok(Vec::new());
+                    return Ok(());
                 }
+                self.heat_all();
+                let most = self.lift();
+                (self.fastest, self.until) = (2.0 * ROOM * most, f64::INFINITY);
+                if gas.heating > 0.0 {
+                    self.fastest += 2.0 * NOISE * most;
+                    let deviation = NOISE * most / DEVIATIONS;
+                    self.until = self.clock + deviation * deviation / noise;
+                }
+                self.since = 0;
             }
-            since += 1;
+            self.since += 1;
             // n/N is 1/V, and half of the ordered pairs are the pairs.
-            self.clock += 2.0 / (gas.density / count as f64 * pairs * area * fastest);
+            self.clock += 2.0 / (gas.density / count as f64 * pairs * area * self.fastest);
             let (which, chance) = self.draw();
             let place = (which * pairs) as usize;
             let (i, j) = (place / (count - 1), place % (count - 1));
@@ -346,23 +399,134 @@ impl<'a> Batch<'a> {
             let speed = u.norm();
             let bodies = [self.kind(i).body, self.kind(j).body];
             let both = bodies[0].reach + bodies[1].reach;
-            let share = speed / fastest * (both * both / (4.0 * reach * reach));
+            let share = speed / self.fastest * (both * both / (4.0 * reach * reach));
             if share > 1.0 {
                 self.whole.beyond += 1.0;
             }
             if chance >= share {
                 continue;
             }
-            self.meet(law, [i, j], bodies, u / speed, both)?;
+            self.meet(law, [i, j], bodies, u, both)?;
             while looks <= gas.samples && self.whole.collisions >= each * looks as f64 {
-                self.look(&mut rows);
+                self.look();
                 looks += 1;
                 let done = self.whole.collisions as u64;
                 monitor.add_finished(done - finished);
                 finished = done;
             }
         }
-        Ok(rows)
+        Ok(())
+    }
+
+    /// Finds the largest speed. Where it has fallen far, takes off what rounding has given to the centre of mass; where it is faint, multiplies velocities, but for the spins of balls that contacts do not turn, and turns back the clock.
+    #[inline(always)]
+    fn lift(&mut self) -> f64 {
+        let squares = self.velocities.iter().map(|v| v.dot(*v));
+        let most = squares.fold(0.0, f64::max).sqrt();
+        if self.slowest == 0.0 {
+            self.slowest = FAR * most;
+        }
+        if most >= self.slowest || self.gas.heating > 0.0 {
+            return most;
+        }
+        self.rest();
+        self.slowest = FAR * most;
+        if most >= FAINT {
+            return most;
+        }
+        self.slowest *= 2f64.powi(LIFT);
+        self.past = self.time();
+        self.exponent += LIFT;
+        let factor = 2f64.powi(LIFT);
+        let mut start = 0;
+        for (kind, &end) in self.gas.kinds.iter().zip(&self.ends) {
+            let turns = kind.turned != [false; 3];
+            let all = self.velocities[start..end].iter_mut();
+            for (v, rotation) in all.zip(&mut self.rotations[start..end]) {
+                *v = *v * factor;
+                rotation.time = (rotation.time - self.clock) / factor;
+                if turns {
+                    rotation.spin = rotation.spin * factor;
+                }
+            }
+            start = end;
+        }
+        self.clock = 0.0;
+        most * factor
+    }
+
+    /// The time since the beginning.
+    fn time(&self) -> f64 {
+        self.past + self.clock * 2f64.powi(self.exponent)
+    }
+
+    /// Writes all that it goes on from.
+    fn save(&self, store: &mut [f64]) {
+        let numbers = [
+            self.clock,
+            self.past,
+            f64::from(self.exponent),
+            self.drawn as f64,
+            self.fastest,
+            self.until,
+            self.since as f64,
+            self.slowest,
+            self.rows.len() as f64,
+        ];
+        let particles = self.velocities.iter().zip(&self.rotations);
+        let particles = particles.flat_map(|(velocity, rotation)| {
+            let ([x, y, z], [a, b, c]) = (velocity.parts(), rotation.spin.parts());
+            let [q, r, s, t] = rotation.attitude.parts();
+            [x, y, z, a, b, c, q, r, s, t, rotation.time]
+        });
+        let all = numbers.into_iter().chain(self.whole.counts());
+        let rows = (self.gas.samples + 1) * self.gas.width();
+        let padding = std::iter::repeat_n(0.0, rows - self.rows.len());
+        let rows = self.rows.iter().copied().chain(padding);
+        let all = all
+            .chain(rows)
+            .chain(particles)
+            .chain(self.heated.iter().copied());
+        for (place, number) in store.iter_mut().zip(all) {
+            *place = number;
+        }
+    }
+
+    /// Goes on from what was written, if anything was.
+    fn restore(&mut self, store: &[f64]) {
+        let (numbers, rest) = store.split_at(NUMBERS);
+        let &[
+            clock,
+            past,
+            exponent,
+            drawn,
+            fastest,
+            until,
+            since,
+            slowest,
+            looks,
+        ] = numbers.first_chunk().expect("they are more");
+        if looks == 0.0 {
+            return;
+        }
+        (self.clock, self.past, self.exponent) = (clock, past, exponent as i32);
+        (self.drawn, self.fastest, self.until, self.since) =
+            (drawn as u64, fastest, until, since as usize);
+        self.slowest = slowest;
+        self.whole = Whole::of(&numbers[9..]);
+        let (rows, rest) = rest.split_at((self.gas.samples + 1) * self.gas.width());
+        self.rows.extend(&rows[..looks as usize]);
+        let (particles, heated) = rest.split_at(self.velocities.len() * (3 + ROTATION));
+        for (i, &[x, y, z, a, b, c, q, r, s, t, time]) in particles.as_chunks().0.iter().enumerate()
+        {
+            self.velocities[i] = Vector::new(x, y, z);
+            self.rotations[i] = ParticleRotation {
+                attitude: Quaternion::new(q, r, s, t),
+                spin: Vector::new(a, b, c),
+                time,
+            };
+        }
+        self.heated.copy_from_slice(heated);
     }
 
     #[inline(always)]
@@ -371,17 +535,28 @@ impl<'a> Batch<'a> {
         law: &Law<'_>,
         pair: [usize; 2],
         bodies: [&Partner; 2],
-        direction: Vector,
+        u: Vector,
         reach: f64,
     ) -> Result<(), Error> {
         let gas = self.gas;
+        let speed = u.norm();
+        let direction = u / speed;
         let (square, around) = self.draw();
         let apart = approach(direction, direction.across(), square.sqrt(), around) * reach;
         let mut states = [
             self.free(pair[0], apart),
             self.free(pair[1], Vector::default()),
         ];
-        for ((i, body), state) in pair.into_iter().zip(bodies).zip(&mut states) {
+        let turns = pair.map(|i| self.kind(i).turned != [false; 3]);
+        let mut spins: f64 = 0.0;
+        for (i, state) in states.iter_mut().enumerate() {
+            if !turns[i] {
+                state.spin = Vector::default(); // that of a smooth ball, which nothing depends on
+                continue;
+            }
+            let body = bodies[i];
+            let i = pair[i];
+            spins = spins.max(state.spin.norm() * reach);
             let passed = match gas.phase {
                 Phase::Time => self.clock - self.rotations[i].time,
                 Phase::Uniform => {
@@ -393,8 +568,12 @@ impl<'a> Batch<'a> {
                     }
                 }
             };
-            state.turn(body, passed);
+            turn(state, body, passed);
             self.rotations[i] = ParticleRotation::new(state, self.clock);
+        }
+        let balls = bodies.iter().all(|body| body.is_ball());
+        if spins > if balls { LOST_SPIN } else { FASTEST_SPIN } * speed {
+            return Err(self.too_hot());
         }
         // The number of the encounter, for materials whose coefficient scatters.
         let number = (self.number as u64) << 48 | self.drawn;
@@ -409,7 +588,10 @@ impl<'a> Batch<'a> {
             hit: &mut |_: &_| {},
             between,
         });
-        let outcome = outcome.map_err(|trouble| failed(law, trouble, (seed, number), 0))?;
+        let outcome = outcome.map_err(|trouble| match trouble {
+            Trouble::Unconverged if spins > FAST_SPIN * speed => self.too_hot(),
+            trouble => failed(law, trouble, (seed, number), 0),
+        })?;
         self.whole.attempts += 1.0;
         self.whole.steps += outcome.steps as f64;
         if outcome.contacts == 0 {
@@ -427,13 +609,31 @@ impl<'a> Batch<'a> {
         let (before, after) = (energy(&states), energy(&outcome.states));
         if after > before * (1.0 + CREATED) {
             self.whole.creating += 1.0;
-            self.whole.created += after - before;
+            self.whole.created += (after - before) * 2f64.powi(-2 * self.exponent);
         }
         for (i, state) in pair.into_iter().zip(&outcome.states) {
             self.velocities[i] = state.velocity;
-            self.rotations[i] = ParticleRotation::new(state, self.clock);
+            let turned = self.kind(i).turned;
+            if turned != [false; 3] {
+                // Rounding would turn a body about the others, too, and that would outlast all else.
+                let (own, before) = (state.spin.parts(), self.rotations[i].spin.parts());
+                let [x, y, z] = std::array::from_fn(|k| if turned[k] { own[k] } else { before[k] });
+                let spin = Vector::new(x, y, z);
+                self.rotations[i] = ParticleRotation::new(&FreeBody { spin, ..*state }, self.clock);
+            }
         }
         Ok(())
+    }
+
+    /// The error where rotation outruns translation.
+    #[cold]
+    fn too_hot(&self) -> Error {
+        Error::Magnitude {
+            name: "collisions",
+            value: self.gas.collisions.into(),
+            allowed: "so few that rotation does not become so much hotter than translation that encounters take too many turns; smooth bodies of \
+                      revolution keep the spin about their axis, so that their spin_temperature is better 0",
+        }
     }
 
     #[inline(always)]
@@ -464,12 +664,19 @@ impl<'a> Batch<'a> {
     /// Heats all particles up to now, and takes off the velocity that this gave to their centre of mass.
     #[inline(always)]
     fn heat_all(&mut self) {
-        if self.gas.heating == 0.0 {
-            return;
+        if self.gas.heating > 0.0 {
+            for i in 0..self.velocities.len() {
+                self.heat(i);
+            }
+            self.rest();
         }
+    }
+
+    /// Takes off the velocity of the centre of mass.
+    #[inline(always)]
+    fn rest(&mut self) {
         let (mut momentum, mut mass) = (Vector::default(), 0.0);
         for i in 0..self.velocities.len() {
-            self.heat(i);
             let own = self.kind(i).body.mass();
             momentum = momentum + self.velocities[i] * own;
             mass += own;
@@ -482,15 +689,16 @@ impl<'a> Batch<'a> {
 
     /// Adds a row: what has happened, and the moments of each kind now.
     #[inline(always)]
-    fn look(&mut self, rows: &mut Vec<f64>) {
+    fn look(&mut self) {
         self.heat_all();
-        rows.extend(self.whole.row(self.clock));
+        let mut rows = std::mem::take(&mut self.rows);
+        rows.extend(self.whole.row(self.time(), self.exponent));
         let mut start = 0;
         for (kind, &end) in self.gas.kinds.iter().zip(&self.ends) {
             let mut sums = SpeciesSums::default();
             for i in start..end {
                 let mut state = self.free(i, Vector::default());
-                state.turn(kind.body, self.clock - self.rotations[i].time);
+                turn(&mut state, kind.body, self.clock - self.rotations[i].time);
                 self.rotations[i] = ParticleRotation::new(&state, self.clock);
                 sums.add(kind, &state);
             }
@@ -502,6 +710,7 @@ impl<'a> Batch<'a> {
             }
             start = end;
         }
+        self.rows = rows;
     }
 }
 
@@ -514,6 +723,20 @@ impl ParticleRotation {
             time,
         }
     }
+}
+
+/// Turns a body as it does in a time, of which whole turns beyond all that a time can say are left out.
+#[inline(always)]
+fn turn(state: &mut FreeBody, body: &Partner, time: f64) {
+    let spin = state.spin.norm();
+    state.turn(
+        body,
+        if spin * time > LOST {
+            time % (LOST / spin)
+        } else {
+            time
+        },
+    );
 }
 
 /// The state of a particle from its numbers.
@@ -541,7 +764,7 @@ struct FollowedGas<'a, 'b, 'c> {
 }
 
 impl WithSimd for FollowedGas<'_, '_, '_> {
-    type Output = Result<Vec<f64>, Error>;
+    type Output = Result<(), Error>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {

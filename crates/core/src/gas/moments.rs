@@ -5,7 +5,7 @@ use crate::math::Vector;
 use crate::pair::{FreeBody, PairState};
 
 /// Columns of a look at a gas: name, unit and text.
-pub const GAS_WHOLE: [(&str, &str, &str); 9] = [
+pub const GAS_WHOLE: [(&str, &str, &str); 10] = [
     ("time", "s", "time"),
     (
         "attempts",
@@ -19,6 +19,11 @@ pub const GAS_WHOLE: [(&str, &str, &str); 9] = [
     ("created_energy", "J", "energy that these created"),
     ("steps", "1", "times at which pairs were looked at"),
     ("beyond", "1", "candidates faster than the majorant"),
+    (
+        "exponent",
+        "1",
+        "power of two by which the velocities of what follows are too large",
+    ),
 ];
 
 /// Columns of a kind of bodies.
@@ -76,10 +81,9 @@ pub struct Whole {
 }
 
 impl Whole {
-    /// [`GAS_WHOLE`].
-    pub fn row(&self, time: f64) -> [f64; GAS_WHOLE.len()] {
+    /// All of them, in the order of [`GAS_WHOLE`].
+    pub fn counts(&self) -> [f64; GAS_WHOLE.len() - 2] {
         [
-            time,
             self.attempts,
             self.collisions,
             self.contacts,
@@ -89,6 +93,26 @@ impl Whole {
             self.steps,
             self.beyond,
         ]
+    }
+
+    /// From [`Self::counts`].
+    pub fn of(counts: &[f64]) -> Self {
+        Self {
+            attempts: counts[0],
+            collisions: counts[1],
+            contacts: counts[2],
+            collapses: counts[3],
+            creating: counts[4],
+            created: counts[5],
+            steps: counts[6],
+            beyond: counts[7],
+        }
+    }
+
+    /// [`GAS_WHOLE`].
+    pub fn row(&self, time: f64, exponent: i32) -> impl Iterator<Item = f64> {
+        let first = std::iter::once(time).chain(self.counts());
+        first.chain(std::iter::once(f64::from(exponent)))
     }
 }
 
