@@ -20,7 +20,7 @@ from restitution._internal.datasets import load, save
 from restitution._internal.files import NETCDF, check, path_for, there
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution._internal.process import undisturbed
-from restitution._internal.resources import check_memory, checked_threads, progress_bar
+from restitution._internal.resources import check_size, checked_threads, progress_bar
 from restitution.bodies import AnyBody, Body, RigidBody
 from restitution.drop.dataset import made_here
 from restitution.laws import CollisionLaw
@@ -237,7 +237,8 @@ def cool(
             raise ParameterError(wrong("particles", kind.particles, f">= {2 * number}, 2 for each batch"))
     total = sum(kind.particles // number * number for kind in kinds)
     path = None if checkpoint is None else path_for("checkpoint", checkpoint, NETCDF)
-    check_memory(total, _PARTICLE * (1 + (record == "state") + 2 * (path is not None)))
+    room = _PARTICLE * (1 + (record == "state") + 2 * (path is not None))
+    check_size("particles", total, total, room, "particles")
     table, last = _follow(kinds, law, course, checked_threads(threads), given, path, show=progress)
     data = _dataset(kinds, table, total)
     if record == "state":
@@ -536,7 +537,7 @@ def _warn(data: xr.Dataset) -> None:
         each = 1.5 * data["translational_temperature"] + 0.5 * data["axis_temperature"].sum("axis")
         if "species" in each.dims:
             each = each.weighted(xr.DataArray(data.attrs["particles"], dims="species")).mean("species")
-        gained = (data["created_energy"].diff("time") / each).mean() * len(each)
+        gained = np.sum(np.diff(data["created_energy"]) / each[1:].to_numpy())
         warnings.warn(
             f"{created:.3g} of the collisions created energy, in a collision of each particle "
             f"{float(gained / data['collisions'][-1]):.2g} of what the gas has: the law does this; "
