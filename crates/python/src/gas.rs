@@ -42,6 +42,7 @@ type Tables<'py> = (
 /// given it goes on from it, if it is not empty, and also returns what a later call goes on from.
 #[pyfunction]
 #[pyo3(signature = (kinds, law, course, threads, given, progress, store = None))]
+#[expect(clippy::too_many_arguments, reason = "one call from Python")]
 fn cool<'py>(
     py: Python<'py>,
     kinds: Vec<Counted<'py>>,
