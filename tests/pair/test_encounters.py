@@ -306,3 +306,28 @@ def test_excluded_volume(body: Any, within: Any, exact: Any, pairs: int) -> None
     share = count / pairs
     found, error = inner + share * (outer - inner), (outer - inner) * np.sqrt(share * (1 - share) / pairs)
     assert abs(found - exact) < 4 * error
+
+
+@pytest.mark.parametrize("size", [1.0, 2.0, 0.3])
+def test_viscoelastic_spheres_of_two_sizes(size: float) -> None:
+    """The radius and the mass of Hertz are the effective ones, and half as stiff as a rigid plane."""
+    about: Any = {"young_modulus": 6e10, "poisson_ratio": 0.22, "dissipation": 1e-6, "density": 2500.0}
+    one, two = 3e-3, 3e-3 * size
+    normal = rs.Viscoelastic(radius=one, **about)
+    body, other = (rs.Dumbbell(radius=radius, separation=0.0, density=2500.0) for radius in (one, two))
+    found = rs.pair.encounters(
+        body,
+        other,
+        rs.Frictionless(normal=normal),
+        encounters=1,
+        speed=1.0,
+        impact_parameter=0.0,
+        spin=[0, 0, 0],
+    )
+    masses = [4 / 3 * np.pi * 2500.0 * radius**3 for radius in (one, two)]
+    stiffness = 4 / 3 * np.sqrt(one * two / (one + two)) * 0.5 * 6e10 / (1 - 0.22**2)
+    beta = 1.5 * 1e-6 * (stiffness * (1 / masses[0] + 1 / masses[1])) ** 0.4
+    x = np.sqrt(beta) * float(found.contact_speed[0]) ** 0.1
+    above = np.polynomial.Polynomial([1.0, 1.07232, 0.574198, 0.141552])
+    below = np.polynomial.Polynomial([1.0, 1.07232, 1.72765, 1.37842, 1.19449, 0.467273, 0.235585])
+    assert float(found.restitution_contact[0]) == pytest.approx(above(x) / below(x), rel=1e-12)

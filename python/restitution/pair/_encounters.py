@@ -22,7 +22,7 @@ from restitution.pair.states import read_states
 Record: TypeAlias = Literal["encounters", "state", "contacts"]
 _STATE = {"position": 3, "velocity": 3, "angular_velocity": 3, "attitude": 4}
 _ENDINGS: list[str] = _core.PAIR_ENDINGS
-COLLAPSE = _ENDINGS.index("collapse")
+COLLAPSE, LASTED = _ENDINGS.index("collapse"), _ENDINGS.index("lasted")
 _CHUNK = 1 << 16
 """Encounters that are held at a time where there may be many."""
 WIDTH = sum(parts * (1 + each) for *_, parts, each in _core.PAIR_ENCOUNTER)
@@ -127,9 +127,10 @@ class Pairs:
         self, states: FloatArray | None, *, contacts: bool, threads: int, progress: Any = None
     ) -> tuple[FloatArray, FloatArray, float]:
         """Follow them; rows of encounters, rows of contacts, and the rate of attempts."""
-        plane = isinstance(self.other, Plane)
         other = None if isinstance(self.other, Plane) else self.other.compiled
-        law = self.law if plane else between(self.law)
+        law = self.law
+        if not isinstance(self.other, Plane):
+            law = between(law, self.other.mass / self.body.mass)
         try:
             rows, hits, rate, interrupted = _core.encounters(
                 self.body.compiled, other, law.compiled, self.drawn, states, contacts, threads, progress
@@ -153,15 +154,18 @@ def check_kinds(body: object, other: object, law: object) -> None:
         raise ParameterError(wrong("law", law, "a collision law, such as Frictionless"))
 
 
-def between(law: CollisionLaw) -> CollisionLaw:
+def between(law: CollisionLaw, mass_ratio: float = 1.0) -> CollisionLaw:
     """Return the law of two spheres of a material, instead of one sphere and a rigid plane.
 
-    With R/2, m/2 and half the stiffness Y/(1 - ν²), ρ/m of Hertz becomes ρ/(√2 m), and β ∝ A(ρ/m)^(2/5).
+    Hertz' ρ/m is (4/3)√R Y/((1 - ν²) m) of the sphere on the plane, and half of it with R_eff and m_eff of
+    two spheres, the second `mass_ratio`^(1/3) times as large as the first. β ∝ A(ρ/m)^(2/5).
     """
     if not isinstance(law, Law) or not isinstance(law.normal, Viscoelastic):
         return law
     own = law.normal.model_dump()
-    normal = Viscoelastic(**own | {"dissipation": own["dissipation"] * 2.0**-0.2})
+    size = mass_ratio ** (1.0 / 3.0)
+    softer = 0.5 * (size / (1.0 + size)) ** 0.5 * (1.0 + mass_ratio) / mass_ratio
+    normal = Viscoelastic(**own | {"dissipation": own["dissipation"] * softer**0.4})
     fields = {name: getattr(law, name) for name in type(law).model_fields}
     return type(law)(**fields | {"normal": normal})
 
@@ -221,7 +225,8 @@ def encounters(
         The second one. A plane is at rest, and there is no gravity.
     law : Law or CustomLaw
         The collision law, for the compliances of both bodies together. The coefficient of `Viscoelastic` is
-        that of two spheres of the material, unless `other` is a plane; any other is taken as it is.
+        that of two spheres of the material, unless `other` is a plane: its radius is that of `body`, and that
+        of `other` larger by the cube root of the ratio of the masses. Any other is taken as it is.
     encounters : int
         Number of encounters.
     translational_temperature : float or pair of float, optional
@@ -254,8 +259,10 @@ def encounters(
     Returns
     -------
     xarray.Dataset
-        Over encounter: ``contacts``; ``ending`` (``missed``, ``parted``, or ``collapse``, of contacts that
-        accumulate or last: what comes after it is not known); ``duration``; ``deflection`` of the relative
+        Over encounter: ``contacts``; ``ending`` (``missed``; ``parted``; ``lasted``, of bodies without
+        friction that rotation pressed together, so that contacts accumulated: they slide on each other until
+        they part, followed to about 1e-9; ``collapse``, of those with friction: what comes after it is not
+        known); ``duration``; ``deflection`` of the relative
         velocity; ``contact_speed`` and ``centre_speed`` at the first contact; and three definitions of ε:
         ``restitution_centres`` -(u'·k)/(u·k) (u the relative velocity of the centres, k their line at the
         first contact), ``restitution_contact`` -(v'·n)/(v·n) (of the points of the first contact along its

@@ -12,7 +12,7 @@ from restitution._internal.resources import checked_threads
 from restitution.bodies import AnyBody
 from restitution.drop.dataset import made_here
 from restitution.laws import CollisionLaw
-from restitution.pair._encounters import COLLAPSE, Pairs
+from restitution.pair._encounters import COLLAPSE, LASTED, Pairs
 from restitution.pair.axes import turned_axes
 
 
@@ -62,7 +62,8 @@ def rates(
         (encounters with contact) in m³/s; ``translational_exchange`` and ``rotational_exchange``, the changes
         of its energies, in W m³; ``translational_cooling`` and ``rotational_cooling``, the same as rates
         -(dE/dt)/E, in m³/s, NaN where E = 0; each with a standard error, ``..._error``. ``collapsed`` is the
-        share of encounters that ended as a collapse, which are left out of the exchange and the contacts.
+        share of encounters that ended as a collapse, which are left out of the exchange and the contacts, and
+        ``lasted`` that of those with a lasting contact, which is not counted as one.
 
     Examples
     --------
@@ -111,6 +112,7 @@ _FOUND = {
     **_RATES,
     **{f"{name}_error": (f"standard error of the {text}", unit) for name, (text, unit) in _RATES.items()},
     "collapsed": ("share of encounters that end as a collapse", "1"),
+    "lasted": ("share of encounters with a lasting contact", "1"),
 }
 
 
@@ -125,7 +127,7 @@ def _of(
 ) -> dict[str, float]:
     """Follow the encounters of one ratio of temperatures, chunk by chunk."""
     pairs = Pairs.thermal(body, body, law, temperature, ratio, count, seed)
-    sums, squares, collapsed, rate = np.zeros(4), np.zeros(4), 0, 0.0
+    sums, squares, collapsed, lasted, rate = np.zeros(4), np.zeros(4), 0, 0, 0.0
     contacts, ending, *energy = _places(
         "contacts",
         "ending",
@@ -138,6 +140,7 @@ def _of(
         rate = flux
         good = rows[:, ending.start] != COLLAPSE
         collapsed += int(np.count_nonzero(~good))
+        lasted += int(np.count_nonzero(rows[:, ending.start] == LASTED))
         number = rows[good, contacts.start]
         before, after, turning, later = (rows[good][:, place].mean(axis=1) for place in energy)
         each = np.stack([number, number > 0, after - before, later - turning])
@@ -154,4 +157,4 @@ def _of(
     values = [*means, *cooling]
     found = dict(zip(_RATES, values, strict=True))
     found |= {f"{name}_error": value for name, value in zip(_RATES, [*errors, *cooling_errors], strict=True)}
-    return found | {"collapsed": collapsed / count}
+    return found | {"collapsed": collapsed / count, "lasted": lasted / count}

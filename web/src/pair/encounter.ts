@@ -11,7 +11,7 @@ const ROTOR = 7;
 /** Columns of a flight, of each body in it, and of a contact. */
 const [FLIGHT, BODY, HIT] = [31, 15, 12];
 /** How an encounter ended, by number. */
-export const ENDINGS = ["missed", "parted", "collapse"] as const;
+export const ENDINGS = ["missed", "parted", "collapse", "lasted"] as const;
 
 export interface Body {
   place: Vector3;

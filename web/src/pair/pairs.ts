@@ -124,7 +124,12 @@ export class Pairs {
   /** The encounter in numbers. */
   private tell({ values, flights, hits }: Encounter, number: number): void {
     const { contacts, ending } = values;
-    const how = ENDINGS[ending] === "collapse" ? ", which accumulate or last: the bodies stay together" : "";
+    const how = {
+      missed: "",
+      parted: "",
+      collapse: ", which accumulate or last: the bodies stay together",
+      lasted: ", and a lasting one, which is not drawn: the bodies slide on each other before they part",
+    }[ENDINGS[ending]];
     part("pair-title").textContent = `Encounter ${number}: ${contacts ? `${contacts} contact${contacts > 1 ? "s" : ""}${how}` : "missed"}`;
     const number4 = (x: number) => (Number.isFinite(x) ? x.toPrecision(4).replace("-", "−") : "–");
     for (const name of ["centres", "contact", "energy"] as const) part(`pair-${name}`).textContent = number4(values[`restitution_${name}`]);

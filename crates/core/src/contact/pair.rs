@@ -15,12 +15,16 @@
 //! perpendicular to their edges; what freedom is left maximises **n**·**Y** − √(**n**·B₁**n**) − √(**n**·B₂**n**) by Newton's method. With **n**′ such that it stays
 //! perpendicular, F′ is the rate of the gap, and steps converge quadratically.
 //!
+//! A ball that is a summand of a part does not turn: its support is ϱ|**d** + s**d**′|, and |**r**| is that of the rest. The surface of a body of revolution
+//! turns about **Λ** at a constant rate Ω: a point that is D from that line has the velocity ΩD and an acceleration Ω²D across **Λ**, of which **n** sees the part
+//! |**n** × **Λ**|/|**Λ**|.
+//!
 //! A plane is a body whose points do not move.
 
 use super::certify::INVISIBLE;
 use super::plane::GapExpansion;
-use crate::math::{Quaternion, Symmetric, Vector};
-use crate::motion::{BodyPose, Turn};
+use crate::math::{Symmetric, Vector};
+use crate::motion::{BodyFrame, BodyPose, Turn};
 use crate::shape::{Feature, Piece, PieceKind, Top};
 
 /// Most steps of a search.
@@ -47,6 +51,7 @@ pub(crate) struct PairSearch<'a> {
 /// The memory of a search about two parts.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Between {
+    parts: [usize; 2],
     /// They do not touch up to this time.
     clear: f64,
     /// The last normal between them.
@@ -91,8 +96,8 @@ struct Parting<'a> {
     features: [Option<&'a Feature>; 2],
 }
 
-/// Attitude and ω, in space, of both bodies.
-type Frames = [(Quaternion, Vector); 2];
+/// The axes of both bodies.
+type Frames = [BodyFrame; 2];
 
 impl BallGap {
     /// A time before which it does not close, and which is when it closes where this is soon.
@@ -100,12 +105,15 @@ impl BallGap {
     fn step(&self, shortest: f64) -> f64 {
         let width = self.width.max(0.0);
         let root = |bound: f64| root(width, self.rate, bound);
-        let step = root(self.bound);
-        if self.rate < 0.0 {
-            let until = -2.0 * self.distance * self.rate / (self.rate * self.rate + self.spread);
-            step.max(until.min(root(self.bound - self.spread / self.distance)))
+        if self.rate >= 0.0 {
+            return root(self.bound).max((shortest / self.bound).sqrt());
+        }
+        let until = -2.0 * self.distance * self.rate / (self.rate * self.rate + self.spread);
+        let bent = root(self.bound - self.spread / self.distance);
+        if bent <= until {
+            bent
         } else {
-            step.max((shortest / self.bound).sqrt())
+            root(self.bound).max(until)
         }
     }
 }
@@ -207,6 +215,7 @@ impl<'a> PairSearch<'a> {
                             self.parts([i, j]),
                             frames(&poses),
                             Vector::default(),
+                            None,
                         )
                         .width
                     }
@@ -240,7 +249,7 @@ impl<'a> PairSearch<'a> {
             }
         }
         let frames = frames(poses);
-        let found = parting(apart, pieces, frames, between.normal);
+        let found = parting(apart, pieces, frames, between.normal, None);
         (found.normal, found.place(apart, pieces, frames))
     }
 
@@ -257,8 +266,11 @@ impl<'a> PairSearch<'a> {
     ) -> Result<Option<PairTouch>, ()> {
         let columns = self.pieces[1].len();
         let invisible = INVISIBLE * self.size;
-        for each in &mut *between {
-            each.clear = 0.0;
+        for row in 0..self.pieces[0].len() {
+            for column in 0..columns {
+                let each = &mut between[row * columns + column];
+                (each.parts, each.clear) = ([row, column], 0.0);
+            }
         }
         let (mut time, mut last) = (from, 0);
         for _ in 0..MOST_STEPS {
@@ -274,7 +286,7 @@ impl<'a> PairSearch<'a> {
                     _ => turn,
                 };
                 if between[place].clear < best {
-                    let parts = [place / columns, place % columns];
+                    let parts = between[place].parts;
                     let left = departure.filter(|left| time == 0.0 && left.parts == parts);
                     let (step, rate, bound) = match self.balls(flight, parts, (time, &poses)) {
                         Some(mut gap) => {
@@ -330,27 +342,25 @@ impl<'a> PairSearch<'a> {
     ) -> (f64, f64, f64) {
         let (pieces, frames) = (self.parts(parts), frames(poses));
         let apart = flight.velocity.mul_add(time, flight.apart);
-        let found = parting(apart, pieces, frames, *normal);
+        let found = parting(apart, pieces, frames, *normal, Some(self.size));
         *normal = found.normal;
         let Parting {
             normal: n, turning, ..
         } = found;
         let speed = turning.norm();
-        let reach = [reach(pieces[0]), reach(pieces[1])];
         let most = if speed > 0.0 {
             1.0 / speed
         } else {
             f64::INFINITY
         };
-        let longer = if speed > 0.0 { 2.0_f64.sqrt() } else { 1.0 };
-        let swings = |i: usize| {
-            let [velocity, acceleration] = flight.turns[i].bounds;
-            (speed * velocity + 0.5 * longer * acceleration) * reach[i]
-        };
-        let curved = swings(0) + swings(1) + (-turning.dot(flight.velocity)).max(0.0);
+        let one = swings(pieces[0], &flight.turns[0], n, speed);
+        let two = swings(pieces[1], &flight.turns[1], n, speed);
+        let curved = speed * (one[0] + two[0])
+            + 0.5 * (one[1] + two[1])
+            + (-turning.dot(flight.velocity)).max(0.0);
         let directions = [
-            direction(n * -1.0, turning * -1.0, frames[0]),
-            direction(n, turning, frames[1]),
+            direction(n * -1.0, turning * -1.0, &frames[0]),
+            direction(n, turning, &frames[1]),
         ];
         let across = turning.dot(apart) + n.dot(flight.velocity);
         let (mut size, mut rate) = (0.0, across);
@@ -366,9 +376,9 @@ impl<'a> PairSearch<'a> {
         };
         let rate = rate + lift;
         let parted = |s: f64| {
-            let [(u, change), (w, other)] = directions;
-            let sum = pieces[0].support(change.mul_add(s, u), Vector::default()).0
-                + pieces[1].support(other.mul_add(s, w), Vector::default()).0;
+            let normal = turning.mul_add(s, n).norm();
+            let sum = height(pieces[0], directions[0], s, normal)
+                + height(pieces[1], directions[1], s, normal);
             width + (s * (across + lift) - (sum - size)) - curved * s * s
         };
         let shortest = (INVISIBLE * self.size / (2.0 * curved)).sqrt();
@@ -406,9 +416,7 @@ impl<'a> PairSearch<'a> {
         };
         // The gap is above F by at most V²s²/2d, d the distance of what touches, which for corners is the gap itself.
         let bends = if width > NARROW * self.size {
-            let turned =
-                flight.turns[0].bounds[0] * reach[0] + flight.turns[1].bounds[0] * reach[1];
-            let most = flight.velocity.norm() + turned;
+            let most = flight.velocity.norm() + one[0] + two[0];
             most * most / width
         } else {
             0.0
@@ -422,9 +430,8 @@ impl Parting<'_> {
     #[inline(always)]
     fn place(&self, apart: Vector, pieces: [&Piece; 2], frames: Frames) -> Vector {
         let point = |i: usize, sign: f64| {
-            let (attitude, _) = frames[i];
-            let u = attitude.inverse().rotate(self.normal * sign);
-            attitude.rotate(pieces[i].support(u, Vector::default()).1)
+            let u = frames[i].back(self.normal * sign);
+            frames[i].rotate(pieces[i].support(u, Vector::default()).1)
         };
         let tied = |i: usize| self.features[i].map_or(0, |feature| feature.ties.len());
         if pieces[1].kind == PieceKind::Plane || tied(0) == 0 && self.features[0].is_some() {
@@ -440,7 +447,7 @@ impl Parting<'_> {
         let (one, two) = (point(0, -1.0), point(1, 1.0) - apart);
         let edge = |i: usize| {
             let tie = self.features[i].map_or(Vector::default(), |feature| feature.ties[0]);
-            frames[i].0.rotate(tie)
+            frames[i].rotate(tie)
         };
         let (e, f) = (edge(0), edge(1));
         let (between, normal) = (two - one, e.cross(f));
@@ -468,26 +475,22 @@ impl<'a> Parting<'a> {
 /// The gap of two parts along a unit vector.
 #[inline(always)]
 fn width(n: Vector, apart: Vector, pieces: [&Piece; 2], frames: Frames) -> f64 {
-    let first = frames[0].0.inverse().rotate(n * -1.0);
-    let second = frames[1].0.inverse().rotate(n);
+    let first = frames[0].back(n * -1.0);
+    let second = frames[1].back(n);
     n.dot(apart)
         - pieces[0].support(first, Vector::default()).0
         - pieces[1].support(second, Vector::default()).0
 }
 
-/// The matrix B of what is round of a part, in space.
+/// The plane that parts two convex parts most, from the normal that did so last; a `rough` one, as [`freely`] has it.
 #[inline(always)]
-fn round(piece: &Piece, axes: Quaternion) -> Symmetric {
-    let back = axes.inverse();
-    let x = axes.rotate(piece.round * back.rotate(Vector::new(1.0, 0.0, 0.0)));
-    let y = axes.rotate(piece.round * back.rotate(Vector::new(0.0, 1.0, 0.0)));
-    let z = axes.rotate(piece.round * back.rotate(Vector::new(0.0, 0.0, 1.0)));
-    Symmetric::from_rows([x.parts(), y.parts(), z.parts()])
-}
-
-/// The plane that parts two convex parts most, from the normal that did so last.
-#[inline(always)]
-fn parting<'a>(apart: Vector, pieces: [&'a Piece; 2], frames: Frames, last: Vector) -> Parting<'a> {
+fn parting<'a>(
+    apart: Vector,
+    pieces: [&'a Piece; 2],
+    frames: Frames,
+    last: Vector,
+    rough: Option<f64>,
+) -> Parting<'a> {
     if pieces[1].kind == PieceKind::Plane {
         return Parting {
             normal: UP,
@@ -501,7 +504,10 @@ fn parting<'a>(apart: Vector, pieces: [&'a Piece; 2], frames: Frames, last: Vect
     } else {
         last
     };
-    let rounds = [round(pieces[0], frames[0].0), round(pieces[1], frames[1].0)];
+    let rounds = [
+        frames[0].round(&pieces[0].round),
+        frames[1].round(&pieces[1].round),
+    ];
     let sharp = rounds.iter().all(|round| *round == Symmetric::default());
     let mut best = Parting {
         normal: start,
@@ -514,12 +520,13 @@ fn parting<'a>(apart: Vector, pieces: [&'a Piece; 2], frames: Frames, last: Vect
             if let Some(normal) = face.normal {
                 let mut features = [None, None];
                 features[i] = Some(face);
-                let normal = frames[i].0.rotate(normal) * sign;
+                let normal = frames[i].rotate(normal) * sign;
                 best = best.or(normal, features, width(normal, apart, pieces, frames));
             }
         }
     }
-    let [a, b] = [frames[0].0, frames[1].0];
+    let alone = pieces[0].corners.len() == 1 && pieces[1].corners.len() == 1;
+    let [a, b] = &frames;
     for one in &pieces[0].features {
         if one.normal.is_some() {
             continue;
@@ -533,7 +540,7 @@ fn parting<'a>(apart: Vector, pieces: [&'a Piece; 2], frames: Frames, last: Vect
             }
             let second = two.ties.first().map(|&tie| b.rotate(tie));
             let between = corner - b.rotate(two.corner);
-            let normal = match (first, second) {
+            let (normal, known) = match (first, second) {
                 (Some(e), Some(f)) => {
                     let across = e.cross(f);
                     let square = across.dot(across);
@@ -541,17 +548,19 @@ fn parting<'a>(apart: Vector, pieces: [&'a Piece; 2], frames: Frames, last: Vect
                         continue;
                     }
                     let side = if across.dot(apart) < 0.0 { -1.0 } else { 1.0 };
-                    across * (side / square.sqrt())
+                    (across * (side / square.sqrt()), None)
                 }
-                (tie, other) => match freely(between, &rounds, tie.or(other), start) {
-                    Some(normal) => normal,
+                (tie, other) => match freely(between, &rounds, tie.or(other), start, rough) {
+                    Some((normal, width)) => (normal, alone.then_some(width)),
                     None => continue,
                 },
             };
-            // No gap is wider than what is between two points of the bodies.
-            if normal.dot(between) > best.width {
-                let width = width(normal, apart, pieces, frames);
-                best = best.or(normal, [Some(one), Some(two)], width);
+            let features = [Some(one), Some(two)];
+            if let Some(width) = known {
+                best = best.or(normal, features, width);
+            } else if normal.dot(between) > best.width {
+                // No gap is wider than what is between two points of the bodies.
+                best = best.or(normal, features, width(normal, apart, pieces, frames));
             }
         }
     }
@@ -559,57 +568,44 @@ fn parting<'a>(apart: Vector, pieces: [&'a Piece; 2], frames: Frames, last: Vect
     best
 }
 
-/// The largest distance of a point of a part from the centre of mass.
-#[inline(always)]
-fn reach(piece: &Piece) -> f64 {
-    match piece.kind {
-        PieceKind::Ball(_, radius) => piece.reach + radius,
-        _ => piece.reach,
-    }
-}
-
 /// A direction and its rate of change in the axes of a body that turns.
 #[inline(always)]
-fn direction(
-    d: Vector,
-    change: Vector,
-    (attitude, spin): (Quaternion, Vector),
-) -> (Vector, Vector) {
-    let back = attitude.inverse();
-    (back.rotate(d), back.rotate(change + d.cross(spin)))
+fn direction(d: Vector, change: Vector, frame: &BodyFrame) -> (Vector, Vector) {
+    (frame.back(d), frame.back(change + d.cross(frame.spin)))
 }
 
-/// The unit vector that maximises **n**·**Y** − √(**n**·B₁**n**) − √(**n**·B₂**n**) among those perpendicular to `tie`, if it is given.
+/// The unit vector that maximises **n**·**Y** − √(**n**·B₁**n**) − √(**n**·B₂**n**), and the maximum, among those perpendicular to `tie`, if it is given. A `rough` one is
+/// enough where what it leaves of the maximum is small beside that; lengths are beside `rough` then.
 #[inline(always)]
 fn freely(
     between: Vector,
     rounds: &[Symmetric; 2],
     tie: Option<Vector>,
     start: Vector,
-) -> Option<Vector> {
+    rough: Option<f64>,
+) -> Option<(Vector, f64)> {
     let mut n = match untied(start, tie) {
         Some(n) => n,
         None => untied(between, tie)?,
     };
-    let mut now = parted(n, between, rounds);
+    let mut now = RoundGap::new(n, between, rounds);
     for _ in 0..ROUNDS {
         let first = tie.map_or_else(|| n.across(), |tie| tie / tie.norm());
         let second = n.cross(first);
         // Slope along both, and curvature: radii of curvature, and the gap, as n stays a unit vector.
         let mut slope = [first.dot(between), second.dot(between)];
-        let (mut aa, mut ab, mut bb) = (now, 0.0, now);
-        for round in rounds {
-            let pushed = *round * n;
-            let square = n.dot(pushed);
-            if square <= 0.0 {
+        let (mut aa, mut ab, mut bb) = (now.width, 0.0, now.width);
+        for (round, (pushed, size)) in rounds.iter().zip(now.pushed) {
+            if size <= 0.0 {
                 continue;
             }
-            let part = 1.0 / square.sqrt();
+            let part = 1.0 / size;
             let (a, b) = (first.dot(pushed) * part, second.dot(pushed) * part);
             slope = [slope[0] - a, slope[1] - b];
-            aa += (first.dot(*round * first) - a * a) * part;
-            ab += (first.dot(*round * second) - a * b) * part;
-            bb += (second.dot(*round * second) - b * b) * part;
+            let [along, across] = [*round * first, *round * second];
+            aa += (first.dot(along) - a * a) * part;
+            ab += (second.dot(along) - a * b) * part;
+            bb += (second.dot(across) - b * b) * part;
         }
         let [p, q] = slope;
         let (x, y) = if tie.is_some() {
@@ -617,35 +613,53 @@ fn freely(
         } else {
             let determinant = aa * bb - ab * ab;
             if aa > 0.0 && determinant > 0.0 {
-                (
-                    (bb * p - ab * q) / determinant,
-                    (aa * q - ab * p) / determinant,
-                )
+                let part = 1.0 / determinant;
+                ((bb * p - ab * q) * part, (aa * q - ab * p) * part)
             } else {
                 let size = (p * p + q * q).sqrt().max(f64::MIN_POSITIVE);
                 (p / size, q / size)
             }
         };
-        let size = (x * x + y * y).sqrt();
-        if size < 1e-15 {
+        let square = x * x + y * y;
+        if square < 1e-30 {
             break;
         }
+        let size = square.sqrt();
         let mut part = (0.7 / size).min(1.0);
         let step = first * x + second * y;
         loop {
             let next = untied(step.mul_add(part, n), tie)?;
-            let there = parted(next, between, rounds);
-            if there >= now || part * size < 1e-7 {
+            let there = RoundGap::new(next, between, rounds);
+            if there.width >= now.width || part * size < 1e-7 {
                 (n, now) = (next, there);
                 break;
             }
             part *= 0.5;
         }
-        if size < 1e-9 {
+        // The error of n is about the square of the step, and that of the maximum of fourth order.
+        let enough = |length: f64| length * square * square < 1e-3 * now.width;
+        if size < 1e-9 || rough.is_some_and(enough) {
             break;
         }
     }
-    Some(n)
+    Some((n, now.width))
+}
+
+/// What [`freely`] maximises, with B**n** and its root of both parts.
+struct RoundGap {
+    width: f64,
+    pushed: [(Vector, f64); 2],
+}
+
+impl RoundGap {
+    #[inline(always)]
+    fn new(n: Vector, between: Vector, rounds: &[Symmetric; 2]) -> Self {
+        let pushed = [pushed(&rounds[0], n), pushed(&rounds[1], n)];
+        Self {
+            width: n.dot(between) - (pushed[0].1 + pushed[1].1),
+            pushed,
+        }
+    }
 }
 
 /// The unit vector along the part of a vector that is perpendicular to a tie, if it is given.
@@ -659,12 +673,37 @@ fn untied(v: Vector, tie: Option<Vector>) -> Option<Vector> {
     if size > 0.0 { Some(v / size) } else { None }
 }
 
-/// What [`freely`] maximises.
+/// h(**u** + s**u**′), but of the ball of a part, which does not turn, where |**n** + s**n**′| is `normal`.
 #[inline(always)]
-fn parted(n: Vector, between: Vector, rounds: &[Symmetric; 2]) -> f64 {
-    let [one, two] = rounds;
-    let round = n.dot(*one * n).max(0.0).sqrt() + n.dot(*two * n).max(0.0).sqrt();
-    n.dot(between) - round
+fn height(piece: &Piece, (u, change): (Vector, Vector), s: f64, normal: f64) -> f64 {
+    let along = change.mul_add(s, u);
+    piece.support(along, Vector::default()).0 - piece.ball * (along.norm() - normal)
+}
+
+/// B**n** and √(**n**·B**n**).
+#[inline(always)]
+fn pushed(round: &Symmetric, n: Vector) -> (Vector, f64) {
+    let pushed = *round * n;
+    (pushed, n.dot(pushed).max(0.0).sqrt())
+}
+
+/// Bounds of the velocity of the points of a part without its ball, and of their acceleration along a normal **n** + s**n**′ with |**n**′| = `speed`.
+#[inline(always)]
+fn swings(piece: &Piece, turn: &Turn, n: Vector, speed: f64) -> [f64; 2] {
+    let longer = if speed > 0.0 { 2.0_f64.sqrt() } else { 1.0 };
+    let Some(about) = turn.about else {
+        let [velocity, acceleration] = turn.bounds;
+        return [velocity * piece.reach, longer * acceleration * piece.reach];
+    };
+    // The acceleration is across Λ.
+    let across = n.cross(about.direction).norm();
+    let part = if speed > 0.0 {
+        (1.0 + across).min(longer)
+    } else {
+        across
+    };
+    let velocity = about.rate * piece.swing(about.sine, about.cosine);
+    [velocity, part * about.rate * velocity]
 }
 
 /// **n**′ such that **n** stays perpendicular to the edges that touch.
@@ -673,10 +712,10 @@ fn turning(parting: &Parting<'_>, frames: Frames) -> Vector {
     let n = parting.normal;
     let mut rows = [(Vector::default(), 0.0); 2];
     let mut count = 0;
-    for (feature, (attitude, spin)) in parting.features.iter().zip(frames) {
+    for (feature, frame) in parting.features.iter().zip(frames) {
         for &tie in feature.iter().flat_map(|feature| &feature.ties) {
-            let edge = attitude.rotate(tie / tie.norm());
-            rows[count] = (edge, -n.dot(spin.cross(edge)));
+            let edge = frame.rotate(tie / tie.norm());
+            rows[count] = (edge, -n.dot(frame.spin.cross(edge)));
             count += 1;
         }
     }
@@ -695,7 +734,7 @@ fn turning(parting: &Parting<'_>, frames: Frames) -> Vector {
     }
 }
 
-/// Attitudes, and ω in space.
+/// The axes of both bodies.
 #[inline(always)]
 fn frames(poses: &[BodyPose; 2]) -> Frames {
     [poses[0].frame(), poses[1].frame()]

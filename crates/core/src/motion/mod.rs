@@ -15,4 +15,4 @@ pub(crate) use symmetric::{
     Attitude, Flight, PlanarFlight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion,
     SpatialState, SymmetricState,
 };
-pub(crate) use turn::{BodyPose, Turn};
+pub(crate) use turn::{BodyFrame, BodyPose, Turn};

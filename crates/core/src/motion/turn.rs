@@ -1,18 +1,33 @@
 //! The motion of the points of a free body about its centre of mass, along one flight.
 //!
 //! A point **p** on the axis **e** of a body with two equal moments J turns with it about the angular momentum **Λ** at the rate |Λ|/J, and
-//! |**p**″| = |p||**ω** × **e**||Λ|/J. Any other point has |**p**″| ≤ (1 + a/√3)Ω²|**p**| ([`SpinBounds`](super::SpinBounds)).
+//! |**p**″| = |p||**ω** × **e**||Λ|/J. The surface of a body of revolution about **e** turns about **Λ** at that rate, too: how it turns about **e** is not
+//! seen. Any other point has |**p**″| ≤ (1 + a/√3)Ω²|**p**| ([`SpinBounds`](super::SpinBounds)).
 
 use super::Rotation;
-use crate::math::{Quaternion, UNITS, Vector};
+use crate::math::{Quaternion, Symmetric, UNITS, Vector};
 use crate::shape::{Symmetry, Top};
 use crate::simd::elementary::sincos;
 
 /// The rotation of a body during a flight.
 pub(crate) struct Turn {
     way: TurnWay,
-    /// The largest velocity and acceleration of a point, per distance from the centre of mass.
+    /// The largest velocity and acceleration of a point, per distance from the centre of mass; of a body of revolution, of a point on its axis.
     pub bounds: [f64; 2],
+    /// Of a body of revolution.
+    pub about: Option<Precession>,
+}
+
+/// The uniform rotation of a body of revolution.
+#[derive(Clone, Copy)]
+pub(crate) struct Precession {
+    /// The direction of **Λ**.
+    pub direction: Vector,
+    /// |Λ|/J.
+    pub rate: f64,
+    /// Sine and cosine of the angle between both.
+    pub sine: f64,
+    pub cosine: f64,
 }
 
 #[expect(
@@ -20,19 +35,26 @@ pub(crate) struct Turn {
     reason = "two live at a time, on the stack"
 )]
 enum TurnWay {
-    /// All points are on an axis of this number: the part of it along **Λ**, that across and **Λ** × **e**/|Λ|, the rate.
+    /// About the axis of this number: the part of it along **Λ**, that across and **Λ** × **e**/|Λ|, the rate.
     Axis(usize, [Vector; 3], f64),
     Any(Rotation),
 }
 
-/// A body at a time: attitude and ω in its own axes, or an axis of it with **e**′ and **e**″.
+/// A body at a time: its axes in space and **ω**, or an axis of it with **e**′ and **e**″, and **Λ**/J.
 ///
 /// All of it is always written: compilers compute with both beforehand, and what happens to be there may be denormal, which takes a hundred cycles.
 pub(crate) struct BodyPose {
-    attitude: Quaternion,
-    spin: Vector,
     axis: Option<usize>,
     motion: [Vector; 3],
+    spin: Vector,
+}
+
+/// The principal axes of a body in space, or of a body of revolution some that turn with its axis, and their **ω**.
+#[derive(Clone, Copy)]
+pub(crate) struct BodyFrame {
+    columns: [Vector; 3],
+    axis: Option<usize>,
+    pub spin: Vector,
 }
 
 impl Top {
@@ -47,8 +69,8 @@ impl Top {
 }
 
 impl Turn {
-    /// The rotation from this attitude with this ω in the axes of the body, whose points are all on a principal axis that precesses, if that
-    /// is given.
+    /// The rotation from this attitude with this ω in the axes of the body, which is one of revolution about a principal axis that precesses, if
+    /// that is given.
     #[inline(always)]
     pub fn new(top: &Top, axis: Option<usize>, attitude: Quaternion, spin: Vector) -> Self {
         let Some(axis) = axis else {
@@ -56,27 +78,29 @@ impl Turn {
             return Self {
                 way: TurnWay::Any(Rotation::new(*top, attitude, spin)),
                 bounds: [bounds.fastest, bounds.whole],
+                about: None,
             };
         };
         let e = attitude.rotate(UNITS[axis]);
         let across = top.moments()[(axis + 1) % 3];
         let momentum = top.momentum(attitude, spin) / across;
         let rate = momentum.norm();
-        if rate == 0.0 {
-            let none = Vector::default();
-            return Self {
-                way: TurnWay::Axis(axis, [e, none, none], 0.0),
-                bounds: [0.0; 2],
-            };
-        }
-        let about = momentum / rate;
+        let about = if rate > 0.0 { momentum / rate } else { e };
         let third = about.cross(e);
         let second = third.cross(about);
-        let along = about * about.dot(e);
-        let speed = rate * third.norm();
+        let cosine = about.dot(e);
+        let along = about * cosine;
+        let sine = third.norm();
+        let speed = rate * sine;
         Self {
             way: TurnWay::Axis(axis, [along, second, third], rate),
             bounds: [speed, rate * speed],
+            about: Some(Precession {
+                direction: about,
+                rate,
+                sine,
+                cosine,
+            }),
         }
     }
 
@@ -89,11 +113,11 @@ impl Turn {
                 let level = third.mul_add(sine, *second * cosine);
                 let change = third.mul_add(cosine, *second * -sine) * *rate;
                 let bend = level * -(*rate * *rate);
+                let about = self.about.expect("it turns about an axis");
                 BodyPose {
-                    attitude: Quaternion::IDENTITY,
-                    spin: Vector::default(),
                     axis: Some(*axis),
                     motion: [*along + level, change, bend],
+                    spin: about.direction * about.rate,
                 }
             }
             TurnWay::Any(rotation) => {
@@ -117,60 +141,109 @@ impl BodyPose {
     /// The body with this attitude and ω in its own axes.
     #[inline(always)]
     pub fn new(attitude: Quaternion, spin: Vector) -> Self {
+        let [x, y, z] = UNITS;
+        let columns = [attitude.rotate(x), attitude.rotate(y), attitude.rotate(z)];
         Self {
-            attitude,
-            spin,
             axis: None,
-            motion: [Vector::default(); 3],
+            motion: columns,
+            spin: combined(columns, spin),
         }
     }
 
     /// Where a point of the body is, from the centre of mass, and its velocity relative to it, in space.
     #[inline(always)]
     pub fn moves(&self, point: Vector) -> [Vector; 2] {
-        let Self { attitude, spin, .. } = *self;
         match self.axis {
             Some(axis) => {
                 let along = point.parts()[axis];
                 [self.motion[0] * along, self.motion[1] * along]
             }
-            None => [attitude.rotate(point), attitude.rotate(spin.cross(point))],
-        }
-    }
-
-    /// Attitude, and ω in space; of balls on an axis a rotation that takes the axis where it is.
-    #[inline(always)]
-    pub fn frame(&self) -> (Quaternion, Vector) {
-        match self.axis {
-            Some(axis) => {
-                let [e, change, _] = self.motion;
-                (Self::about(axis, e), e.cross(change))
+            None => {
+                let place = combined(self.motion, point);
+                [place, self.spin.cross(place)]
             }
-            None => (self.attitude, self.attitude.rotate(self.spin)),
         }
     }
 
-    /// A rotation that takes this principal axis to a unit vector.
-    fn about(axis: usize, e: Vector) -> Quaternion {
-        let from = UNITS[axis];
-        let (along, across) = (from.dot(e), from.cross(e));
-        if along > -0.5 {
-            return Quaternion::new(1.0 + along, across.x, across.y, across.z).normalized();
+    /// Its axes.
+    #[inline(always)]
+    pub fn frame(&self) -> BodyFrame {
+        let columns = match self.axis {
+            None => self.motion,
+            Some(axis) => {
+                let e = self.motion[0];
+                let across = e.across();
+                let mut columns = [e; 3];
+                columns[(axis + 1) % 3] = across;
+                columns[(axis + 2) % 3] = e.cross(across);
+                columns
+            }
+        };
+        BodyFrame {
+            columns,
+            axis: self.axis,
+            spin: self.spin,
         }
-        // Half a turn about the next axis first.
-        let Vector { x, y, z } = UNITS[(axis + 1) % 3];
-        let (along, across) = (-along, across * -1.0);
-        Quaternion::new(1.0 + along, across.x, across.y, across.z).normalized()
-            * Quaternion::new(0.0, x, y, z)
     }
 
-    /// Its acceleration.
+    /// The acceleration of a point.
     #[inline(always)]
     pub fn bends(&self, top: &Top, point: Vector) -> Vector {
-        let Self { attitude, spin, .. } = *self;
         match self.axis {
             Some(axis) => self.motion[2] * point.parts()[axis],
-            None => attitude.rotate(top.change(spin).cross(point) + spin.cross(spin.cross(point))),
+            None => {
+                let frame = self.frame();
+                let change = frame.rotate(top.change(frame.back(self.spin)));
+                let place = frame.rotate(point);
+                change.cross(place) + self.spin.cross(self.spin.cross(place))
+            }
         }
     }
+}
+
+impl BodyFrame {
+    /// A vector of the body in space.
+    #[inline(always)]
+    pub fn rotate(&self, v: Vector) -> Vector {
+        combined(self.columns, v)
+    }
+
+    /// A vector of space in the axes of the body.
+    #[inline(always)]
+    pub fn back(&self, v: Vector) -> Vector {
+        let [x, y, z] = self.columns;
+        Vector::new(x.dot(v), y.dot(v), z.dot(v))
+    }
+
+    /// A matrix of the body in space; of a body of revolution it is symmetric about the axis.
+    #[inline(always)]
+    pub fn round(&self, body: &Symmetric) -> Symmetric {
+        if let Some(axis) = self.axis {
+            let entries = [body.xx, body.yy, body.zz];
+            let [along, across] = [entries[axis], entries[(axis + 1) % 3]];
+            return Symmetric::diagonal([across; 3])
+                + Symmetric::square(self.columns[axis], along - across);
+        }
+        let [x, y, z] = self.columns;
+        // The rows of the axes.
+        let [a, b, c] = [
+            Vector::new(x.x, y.x, z.x),
+            Vector::new(x.y, y.y, z.y),
+            Vector::new(x.z, y.z, z.z),
+        ];
+        let [p, q, r] = [*body * a, *body * b, *body * c];
+        Symmetric {
+            xx: a.dot(p),
+            yy: b.dot(q),
+            zz: c.dot(r),
+            xy: a.dot(q),
+            xz: a.dot(r),
+            yz: b.dot(r),
+        }
+    }
+}
+
+#[inline(always)]
+fn combined([x, y, z]: [Vector; 3], v: Vector) -> Vector {
+    z.mul_add(v.z, y.mul_add(v.y, x * v.x))
 }

@@ -1,11 +1,12 @@
 //! One encounter: the approach, contacts until the bodies part, and the way out.
 //!
-//! An encounter begins where it is given, and ends where the centres are farther apart than the bodies reach and move away from each other. A contact
-//! that is not left, or contacts that accumulate, end it as a collapse.
+//! An encounter begins where it is given, and ends where the centres are farther apart than the bodies reach and move away from each other. Contacts that
+//! accumulate, or one that is not left, are a lasting contact: without friction it is followed ([`Lasting`]), else it ends the encounter as a collapse.
 
 use super::Partner;
+use super::lasting::Lasting;
 use crate::contact::{Between, PairDeparture, PairFlight, PairSearch, PairTouch};
-use crate::law::{Compliance, Law};
+use crate::law::{Compliance, Law, Rule};
 use crate::math::{Quaternion, Symmetric, Vector};
 use crate::motion::{BodyPose, Rotation, Turn};
 use crate::simd::Level;
@@ -14,6 +15,9 @@ use pulp::{Simd, WithSimd};
 
 /// M T² over the sum of the reaches below which a flight of duration T counts as unresolved.
 const UNRESOLVED: f64 = 8.0 / 8_796_093_022_208.0;
+
+/// Lasting contacts of an encounter after which it is given up.
+const MOST_LASTING: u64 = 8;
 
 /// Position and motion of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,16 +41,20 @@ pub enum Ending {
     Parted,
     /// Contacts accumulate, or last.
     Collapse,
+    /// The bodies have parted after at least one lasting contact.
+    Lasted,
 }
 
 impl Ending {
     /// The names, in the order of the numbers.
-    pub const NAMES: [&'static str; 3] = ["missed", "parted", "collapse"];
+    pub const NAMES: [&'static str; 4] = ["missed", "parted", "collapse", "lasted"];
 }
 
 /// A contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
+    /// Its number; one that is found later takes the place of another with the same, which was one of those that accumulated to a lasting contact.
+    pub number: u64,
     /// The time since the beginning.
     pub time: f64,
     /// The unit vector from the second body to the first.
@@ -70,7 +78,7 @@ pub struct Outcome<T = PairState> {
     pub states: [T; 2],
     /// The time since the beginning.
     pub time: f64,
-    /// Number of contacts.
+    /// Number of contacts, without those that accumulated to a lasting one.
     pub contacts: u64,
     /// The reason.
     pub ending: Ending,
@@ -203,13 +211,13 @@ impl FreeBody {
     }
 
     #[inline(always)]
-    fn pose(&self) -> BodyPose {
+    pub(super) fn pose(&self) -> BodyPose {
         BodyPose::new(self.attitude, self.spin)
     }
 
     /// The velocity of a point relative to the centre of mass.
     #[inline(always)]
-    fn moves(&self, arm: Vector) -> Vector {
+    pub(super) fn moves(&self, arm: Vector) -> Vector {
         self.attitude.rotate(self.spin).cross(arm)
     }
 
@@ -258,54 +266,67 @@ impl Following<'_, '_> {
         let balls = bodies[0].is_ball() && (bodies[1].is_ball() || bodies[1].is_plane());
         let mut departure: Option<PairDeparture> = None;
         let (mut unresolved, mut clock, mut contacts, mut steps) = (0, 0.0, 0, 0);
+        let (mut drawn, mut lasted, mut pressed) = (0, 0, None);
         let ending = loop {
+            if let Some(parts) = std::mem::take(&mut pressed) {
+                let Some((time, speed)) =
+                    self.lasts(&search, parts).filter(|_| lasted < MOST_LASTING)
+                else {
+                    break Ending::Collapse;
+                };
+                contacts -= unresolved;
+                (clock, unresolved, lasted) = (clock + time, 0, lasted + 1);
+                departure = Some(PairDeparture { parts, speed });
+            }
             let (enters, leaves) = self.within(reach);
             if contacts == 0 && leaves <= 0.0 {
                 break Ending::Missed;
             }
-            let mut flown = None;
-            let found = if balls && departure.is_none_or(|left| left.speed > 0.0) {
-                // Balls touch where they come into reach of each other, and that once.
-                steps += 1;
-                (contacts == 0 && self.approach()).then_some(PairTouch {
-                    time: enters,
-                    parts: [0, 0],
-                    size: f64::INFINITY,
-                })
-            } else {
-                let flight = flown.insert(flight(bodies, &self.states));
-                let tops = [&bodies[0].top, &bodies[1].top];
-                if departure.is_some_and(|left| search.rests(tops, flight, &left)) {
-                    break Ending::Collapse;
-                }
-                let times = [enters, leaves];
-                search
-                    .first(flight, departure, times, self.between, &mut steps)
-                    .map_err(|()| Trouble::Unconverged)?
-            };
-            let time = match found {
+            let after = |found: &Option<PairTouch>| match found {
                 Some(touch) => touch.time,
                 None if leaves < f64::INFINITY => leaves,
                 None => 0.0,
             };
-            clock += time;
-            for (i, (state, body)) in self.states.iter_mut().zip(bodies).enumerate() {
-                state.position = state.velocity.mul_add(time, state.position);
-                let followed = flown.as_mut();
-                match followed.and_then(|flight: &mut PairFlight| flight.turns[i].rotated(time)) {
-                    _ if body.is_plane() => {}
-                    Some(later) => (state.attitude, state.spin) = later,
-                    None => state.turn(body, time),
+            let (found, time);
+            if balls && departure.is_none_or(|left| left.speed > 0.0) {
+                // Balls touch where they come into reach of each other, and that once.
+                steps += 1;
+                found = (contacts == 0 && self.approach()).then_some(PairTouch {
+                    time: enters,
+                    parts: [0, 0],
+                    size: f64::INFINITY,
+                });
+                time = after(&found);
+                self.turn(0, time, None);
+                self.turn(1, time, None);
+            } else {
+                let mut flight = flight(bodies, &self.states);
+                let tops = [&bodies[0].top, &bodies[1].top];
+                if let Some(left) = departure
+                    && search.rests(tops, &mut flight, &left)
+                {
+                    pressed = Some(left.parts);
+                    continue;
                 }
+                let times = [enters, leaves];
+                found = search
+                    .first(&mut flight, departure, times, self.between, &mut steps)
+                    .map_err(|()| Trouble::Unconverged)?;
+                time = after(&found);
+                let [one, two] = &mut flight.turns;
+                self.turn(0, time, one.rotated(time));
+                self.turn(1, time, two.rotated(time));
             }
+            clock += time;
             let Some(touch) = found else {
-                break if contacts == 0 {
-                    Ending::Missed
-                } else {
-                    Ending::Parted
+                break match (contacts, lasted) {
+                    (0, _) => Ending::Missed,
+                    (_, 0) => Ending::Parted,
+                    _ => Ending::Lasted,
                 };
             };
-            let speed = self.collide(&search, clock, contacts, &touch)?;
+            let speed = self.collide(&search, clock, [contacts, drawn], &touch)?;
+            drawn += 1;
             let parts = touch.parts;
             departure = Some(PairDeparture { parts, speed });
             contacts += 1;
@@ -314,8 +335,8 @@ impl Following<'_, '_> {
             } else {
                 0
             };
-            if unresolved == COLLAPSE_RUN {
-                break Ending::Collapse;
+            if unresolved == u64::from(COLLAPSE_RUN) {
+                pressed = Some(parts);
             }
         };
         Ok(Outcome {
@@ -325,6 +346,18 @@ impl Following<'_, '_> {
             ending,
             steps,
         })
+    }
+
+    /// A body after a time in which it turns as is known, or is found here.
+    #[inline(always)]
+    fn turn(&mut self, i: usize, time: f64, known: Option<(Quaternion, Vector)>) {
+        let (state, body) = (&mut self.states[i], self.bodies[i]);
+        state.position = state.velocity.mul_add(time, state.position);
+        match known {
+            _ if body.is_plane() => {}
+            Some(later) => (state.attitude, state.spin) = later,
+            None => state.turn(body, time),
+        }
     }
 
     /// The place and the velocity of the first body from the second.
@@ -386,13 +419,30 @@ impl Following<'_, '_> {
         (enters.max(0.0), leaves.max(0.0))
     }
 
-    /// The impact of a contact; returns the speed at which its points leave each other.
+    /// Moves the bodies as long as they are pressed together, if there is no friction; returns the time and the speed at which they part.
+    #[cold]
+    #[inline(never)]
+    fn lasts(&mut self, search: &PairSearch<'_>, parts: [usize; 2]) -> Option<(f64, f64)> {
+        if self.law.custom.is_some() || !matches!(self.law.rule, Rule::Frictionless(_)) {
+            return None;
+        }
+        let [row, column] = parts;
+        let lasting = Lasting {
+            bodies: self.bodies,
+            search,
+            parts,
+            between: &self.between[row * self.bodies[1].pieces.len() + column],
+        };
+        lasting.follow(&mut self.states)
+    }
+
+    /// The impact of a contact, of this number, with the random numbers of that one; returns the speed at which its points leave each other.
     #[inline(always)]
     fn collide(
         &mut self,
         search: &PairSearch<'_>,
         time: f64,
-        number: u64,
+        [number, drawn]: [u64; 2],
         touch: &PairTouch,
     ) -> Result<f64, Trouble> {
         let bodies = self.bodies;
@@ -409,11 +459,12 @@ impl Following<'_, '_> {
         let compliance =
             one.compliance(bodies[0], back, arms[0]) + two.compliance(bodies[1], back, arms[1]);
         let met = back.rotate(velocity + one.moves(arms[0]) - two.moves(arms[1])); // (7)
-        let chance = (self.law.deviation > 0.0).then(|| (self.chance)(number));
+        let chance = (self.law.deviation > 0.0).then(|| (self.chance)(drawn));
         let answer = self.law.answer_drawn(&compliance, met, chance);
         let answer = answer.map_err(Trouble::Fault)?;
         let impulse = frame.rotate(answer.impulse);
         (self.hit)(&Hit {
+            number,
             time,
             normal,
             point: one.position + first,
@@ -430,7 +481,7 @@ impl Following<'_, '_> {
 }
 
 #[inline(always)]
-fn flight(bodies: [&Partner; 2], states: &[FreeBody; 2]) -> PairFlight {
+pub(super) fn flight(bodies: [&Partner; 2], states: &[FreeBody; 2]) -> PairFlight {
     let [one, two] = states;
     PairFlight {
         apart: one.position - two.position,

@@ -1,6 +1,7 @@
 //! Two bodies in free flight: encounters, followed exactly, in coherent units.
 
 mod encounter;
+mod lasting;
 mod partner;
 mod run;
 mod sample;

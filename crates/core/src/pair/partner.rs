@@ -17,7 +17,7 @@ pub struct Partner {
     /// The rotation from the principal axes to those that the body was given in.
     pub(crate) axes: Quaternion,
     pub(crate) pieces: Vec<Piece>,
-    /// The principal axis on which the centres of all parts are, if it precesses.
+    /// The principal axis about which it is a body of revolution, if that precesses.
     pub(crate) axis: Option<usize>,
     ball: bool,
 }
@@ -37,29 +37,24 @@ impl Partner {
         };
         let top = Top::new(moments)?;
         let pieces = body.pieces(name)?;
-        let on = |axis: usize| {
-            let off = |piece: &Piece| {
-                let PieceKind::Ball(place, _) = piece.kind else {
-                    return true;
-                };
-                let place = place.parts();
-                place[(axis + 1) % 3] != 0.0 || place[(axis + 2) % 3] != 0.0
-            };
-            top.precesses(axis) && !pieces.iter().any(off)
+        let round = |&axis: &usize| {
+            top.precesses(axis) && pieces.iter().all(|piece| piece.is_round_about(axis))
+        };
+        let axis = (0..3).rev().find(round);
+        let pieces: Vec<Piece> = match axis {
+            Some(axis) => pieces.into_iter().map(|piece| piece.about(axis)).collect(),
+            None => pieces,
         };
         let ball = |piece: &Piece| match piece.kind {
             PieceKind::Ball(place, _) => place == Vector::default(),
             _ => false,
         };
-        let reach = |piece: &Piece| match piece.kind {
-            PieceKind::Ball(_, radius) => piece.reach + radius,
-            _ => piece.reach,
-        };
+        let reach = |piece: &Piece| piece.reach + piece.ball;
         Ok(Self {
             inverse_mass: 1.0 / body.mass(),
             inverse_moments: top.moments().map(|moment| 1.0 / moment),
             reach: pieces.iter().map(reach).fold(0.0, f64::max),
-            axis: (0..3).rev().find(|&axis| on(axis)),
+            axis,
             ball: pieces.iter().all(ball),
             top,
             axes,

@@ -257,13 +257,16 @@ impl Encounters<'_> {
                 }
             },
         )?;
-        Ok(tables
-            .into_iter()
-            .fold(PairTable::default(), |mut all, table| {
-                all.encounters.extend(table.encounters);
-                all.hits.extend(table.hits);
-                all
-            }))
+        let mut all = PairTable::default();
+        all.encounters
+            .reserve_exact(tables.iter().map(|table| table.encounters.len()).sum());
+        all.hits
+            .reserve_exact(tables.iter().map(|table| table.hits.len()).sum());
+        for table in tables {
+            all.encounters.extend(table.encounters);
+            all.hits.extend(table.hits);
+        }
+        Ok(all)
     }
 
     /// Follows all encounters in blocks, each of which is summed up by itself, in their order.
@@ -432,12 +435,16 @@ impl<T, F: Fn(&Encountered, &[Hit], &mut T)> WithSimd for EncounterBlock<'_, '_,
                 law: self.law,
                 states: FreeBody::both(bodies, &before),
                 chance: &|contact| of_impact(seed, number, contact),
-                hit: &mut |hit: &Hit| hits.push(*hit),
+                hit: &mut |hit: &Hit| {
+                    hits.truncate(hit.number as usize);
+                    hits.push(*hit);
+                },
                 between: &mut *self.between,
             });
             let outcome =
                 outcome.map_err(|trouble| failed(self.law, trouble, (seed, number), hits.len()))?;
             let outcome = outcome.given(bodies);
+            hits.truncate(outcome.contacts as usize);
             let found = Encountered {
                 before,
                 outcome,

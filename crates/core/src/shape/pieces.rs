@@ -8,7 +8,7 @@ use super::revolution::Ball;
 use super::{AnyBody, ConvexSurface, Rigid, RigidSurface, Solid, convex_hull};
 use crate::Error;
 use crate::Value;
-use crate::math::{Quaternion, Symmetric, Vector};
+use crate::math::{Quaternion, Symmetric, UNITS, Vector};
 
 /// A part of a body, in m and the principal axes, from the centre of mass.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,8 +19,13 @@ pub(crate) struct Piece {
     pub features: Vec<Feature>,
     /// B.
     pub round: Symmetric,
-    /// The largest distance of a point of it from the centre of mass; of a ball that of its centre.
+    /// The radius of a ball whose sum with something convex it is, as large as this can be.
+    pub ball: f64,
+    /// The largest distance of a point of that from the centre of mass.
     pub reach: f64,
+    /// Of what is symmetric about a principal axis: the largest height of a corner on it, and the semi-axes of an ellipsoid along and across with which
+    /// the rest without the ball fits.
+    pub extents: [f64; 3],
 }
 
 /// The kind of a part.
@@ -83,6 +88,7 @@ impl Piece {
         let square = radius * radius;
         Self {
             kind: PieceKind::Ball(centre, radius),
+            ball: radius,
             reach: centre.norm(),
             ..Self::convex(
                 vec![centre],
@@ -97,13 +103,23 @@ impl Piece {
             .iter()
             .map(|corner| corner.norm())
             .fold(0.0, f64::max);
-        let ([a, b, c], _) = round.principal();
+        let (squares, _) = round.principal();
+        let [a, b, c] = squares.map(|square| square.max(0.0).sqrt());
+        let (least, most) = (a.min(b).min(c), a.max(b).max(c));
+        // The least radius of curvature of an ellipsoid, where it is most pointed.
+        let ball = if most > 0.0 {
+            least * least / most
+        } else {
+            0.0
+        };
         Self {
             kind: PieceKind::Convex,
             corners,
             features,
             round,
-            reach: far + a.max(b).max(c).max(0.0).sqrt(),
+            ball,
+            reach: far + (most - ball),
+            extents: [0.0; 3],
         }
     }
 
@@ -157,6 +173,36 @@ impl Piece {
         Some(Self::convex(corners, features, Symmetric::default()))
     }
 
+    /// Whether it is a body of revolution about the principal axis of this number.
+    pub(crate) fn is_round_about(&self, axis: usize) -> bool {
+        let [_, f, g] = around(axis);
+        let on = |v: &Vector| v.dot(f) == 0.0 && v.dot(g) == 0.0;
+        let sides = self.features.iter().all(|feature| match feature.normal {
+            Some(normal) => on(&normal),
+            None => feature.ties.iter().all(on),
+        });
+        let [one, two] = [f, g].map(|u| self.round * u);
+        self.corners.iter().all(on) && sides && one == f * one.dot(f) && two == g * one.dot(f)
+    }
+
+    /// With [`Self::extents`] about a principal axis.
+    pub(crate) fn about(mut self, axis: usize) -> Self {
+        let [e, f, _] = around(axis);
+        let height = self.corners.iter().map(|corner| corner.dot(e).abs());
+        let [along, across] = [e, f].map(|u| (u.dot(self.round * u).sqrt() - self.ball).max(0.0));
+        self.extents = [height.fold(0.0, f64::max), along, across];
+        self
+    }
+
+    /// The largest distance of its points, without its ball, from an axis through the centre of mass; sine and cosine of the angle between that axis and its
+    /// own. It is the largest support across that axis, and √(**u**·B**u**) − ϱ at most that of an ellipsoid whose axes are shorter by ϱ.
+    #[inline(always)]
+    pub(crate) fn swing(&self, sine: f64, cosine: f64) -> f64 {
+        let [height, along, across] = self.extents;
+        let [x, y] = [along * sine, across * cosine];
+        height.mul_add(sine, x.mul_add(x, y * y).sqrt().max(across))
+    }
+
     /// The support in a direction of any length, and the place of the point that lies farthest; of several corners that which moves farthest as the
     /// direction changes by `turning`.
     #[inline(always)]
@@ -180,6 +226,11 @@ impl Piece {
             best
         }
     }
+}
+
+/// A principal axis and the next two.
+fn around(axis: usize) -> [Vector; 3] {
+    [0, 1, 2].map(|i| UNITS[(axis + i) % 3])
 }
 
 impl AnyBody<'_> {
