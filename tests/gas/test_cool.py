@@ -308,3 +308,20 @@ def test_distributions_of_a_mixture() -> None:
 def test_more_particles_than_memory_are_named() -> None:
     with pytest.raises(ValueError, match=r"^particles = 1000000000000: must be at most .* particles, which"):
         rs.gas.cool(dumbbell(1.0), ELASTIC, particles=10**12, translational_temperature=1.0)
+
+
+def test_viscoelastic_spheres_of_a_gas_are_two_spheres() -> None:
+    """In the first collisions they lose what a pair does, which is less than on a rigid plane."""
+    normal = rs.Viscoelastic(
+        young_modulus=1e9, poisson_ratio=0.3, dissipation=2e-6, density=2500.0, radius=1e-3
+    )
+    body, law = rs.Dumbbell(radius=1e-3, separation=0.0), rs.Frictionless(normal=normal)
+    warm = body.mass * 0.3**2
+    gas = rs.gas.cool(body, law, particles=4000, collisions=0.2, translational_temperature=warm, samples=1)
+    pairs = rs.pair.encounters(
+        body, body, law, encounters=4000, translational_temperature=warm, rotational_temperature=0.0
+    )
+    lost = (pairs.translational_energy_before - pairs.translational_energy_after).sum("particle")
+    collisions = 0.5 * float(gas.collisions[-1])
+    falls = 1.5 * float(gas.translational_temperature[0] - gas.translational_temperature[-1])
+    assert falls == pytest.approx(collisions * float(lost.mean()), rel=0.06)

@@ -25,6 +25,7 @@ from restitution.bodies import AnyBody, Body, RigidBody
 from restitution.drop.dataset import made_here
 from restitution.laws import CollisionLaw
 from restitution.pair.axes import turned_axes
+from restitution.pair.materials import between
 from restitution.pair.states import read_states
 
 Phase = Literal["time", "uniform"]
@@ -109,7 +110,8 @@ def cool(
     body : Dumbbell or another body, or a sequence of them
         The particles; of a mixture each of its species.
     law : Frictionless or another law
-        The collision law, of every contact.
+        The collision law, of every contact. The coefficient of `Viscoelastic` is that of two spheres with its
+        radius.
     particles : int or sequence of int, optional
         How many there are, of each species; at least 2 for each of the batches. 100 000 if left out.
     collisions : float
@@ -286,7 +288,7 @@ def _follow(
                     raise _Pause
 
             (table, last, store), interrupted = _core.cool(
-                rows, law.compiled, course, threads, given, tell if path is None else watch, store
+                rows, between(law).compiled, course, threads, given, tell if path is None else watch, store
             )
             if path is not None:
                 about = {"restitution_gas": mark, "title": "How far a gas has come, for restitution.gas.cool"}

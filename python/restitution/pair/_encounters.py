@@ -16,7 +16,8 @@ from restitution._internal.parameters import ParameterError, Parameters, Problem
 from restitution._internal.resources import check_size, checked_threads, progress_bar
 from restitution.bodies import AnyBody
 from restitution.drop.dataset import made_here
-from restitution.laws import CollisionLaw, Law, Viscoelastic
+from restitution.laws import CollisionLaw
+from restitution.pair.materials import between
 from restitution.pair.states import read_states
 
 Record: TypeAlias = Literal["encounters", "state", "contacts"]
@@ -152,22 +153,6 @@ def check_kinds(body: object, other: object, law: object) -> None:
         raise ParameterError(wrong("other", other, "a body, or Plane()"))
     if not isinstance(law, CollisionLaw):
         raise ParameterError(wrong("law", law, "a collision law, such as Frictionless"))
-
-
-def between(law: CollisionLaw, mass_ratio: float = 1.0) -> CollisionLaw:
-    """Return the law of two spheres of a material, instead of one sphere and a rigid plane.
-
-    Hertz' ρ/m is (4/3)√R Y/((1 - ν²) m) of the sphere on the plane, and half of it with R_eff and m_eff of
-    two spheres, the second `mass_ratio`^(1/3) times as large as the first. β ∝ A(ρ/m)^(2/5).
-    """
-    if not isinstance(law, Law) or not isinstance(law.normal, Viscoelastic):
-        return law
-    own = law.normal.model_dump()
-    size = mass_ratio ** (1.0 / 3.0)
-    softer = 0.5 * (size / (1.0 + size)) ** 0.5 * (1.0 + mass_ratio) / mass_ratio
-    normal = Viscoelastic(**own | {"dissipation": own["dissipation"] * softer**0.4})
-    fields = {name: getattr(law, name) for name in type(law).model_fields}
-    return type(law)(**fields | {"normal": normal})
 
 
 def _temperatures(name: str, value: Any) -> tuple[float, float] | None:
