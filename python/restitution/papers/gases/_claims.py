@@ -146,7 +146,7 @@ def _rough(value: float) -> str:
 
 @CLAIMS.add(
     "rough-spheres",
-    "both energies decay algebraically like t^-2 with a fixed ratio of amplitudes, different from 1",
+    "both energies decay algebraically like t⁻² with a fixed ratio of amplitudes, different from 1",
     "Huthmann and Zippelius, PRE 56, R6275 (1997), DOI 10.1103/PhysRevE.56.R6275; the ratio is that of their "
     "Maxwellian theory",
 )
