@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -83,7 +84,8 @@ def experiment(
         # An impact soon after another would have been heard as one with it.
         if np.all(flights > 0.0) and np.all(flights[1:] > 0.1 * flights[:-1]):
             break
-    data = rs.flight.restitution(times, ERROR, drop_height=DROP)
+    exact: dict[str, Any] = {"gravity_uncertainty": 0.0, "clock_uncertainty": 0.0}
+    data = rs.flight.restitution(times, ERROR, drop_height=DROP, **exact)
     found = rs.posterior(
         data,
         rs.Frictionless(normal=normal) if kind is None else None,

@@ -1,5 +1,6 @@
 """`restitution listen`: the page, what stands beside it, and what it says to recordings that tell nothing."""
 
+import math
 import re
 from collections.abc import Iterator
 from html.parser import HTMLParser
@@ -17,7 +18,7 @@ from benchmarks.recording import PLATE, recording
 from reference.bouncing import impact_times
 from restitution._internal.parameters import ParameterError, Problem
 from restitution.cli import app
-from restitution.experiment.listen import Setting, analyse
+from restitution.experiment.listen import Setting, analyse, write
 
 RATE = 44100
 
@@ -351,3 +352,29 @@ def test_drops_in_several_files_give_one_answer(tmp_path: Path, monkeypatch: pyt
     assert data.sizes["impact"] == 75
     assert np.unique(data.file.values).tolist() == [0, 1, 2, 3, 4]
     assert np.isnan(data.restitution_covariance.values[5, 20])
+
+
+def test_a_class_has_one_number_and_what_differs_between_tables(tmp_path: Path) -> None:
+    """Eight tables in folders, two drops each, plates that differ by 0.002: that is the error of the mean."""
+    rng, files = np.random.default_rng(3), []
+    for table in range(8):
+        plate = 0.92 + 2e-3 * rng.standard_normal()
+        for drop in range(2):
+            steps = plate + 4e-4 * rng.standard_normal() + 4e-4 * rng.standard_normal(11)
+            times = np.append(0.0, np.cumsum(0.28 * np.cumprod(steps))) + rng.normal(0.0, 2e-5, 12)
+            files.append(tmp_path / f"table{table}" / f"drop{drop}.csv")
+            files[-1].parent.mkdir(exist_ok=True)
+            files[-1].write_text("time (s)\n" + "\n".join(f"{time:.7f}" for time in times), encoding="utf-8")
+    setting = Setting(diameter=0.02, mass=0.0327, time_uncertainty=2e-5)
+    found = write(files, tmp_path / "class.html", setting)
+    [said] = found.sentences
+    match = re.search(r"in 16 drops of balls at 8 tables, .* is (0\.\d+) ± (0\.\d+),.* between tables", said)
+    assert match is not None, said
+    assert float(match[1]) == pytest.approx(0.92, abs=3.0 * 2e-3 / math.sqrt(8.0))
+    assert 4e-4 < float(match[2]) < 1.6e-3
+    assert found.together is not None
+    assert found.together.shape is None  # of balls of their own
+    page = (tmp_path / "class.html").read_text(encoding="utf-8")
+    for words in ("table0/drop0.csv", "table7/drop1.csv", "The drops by themselves"):
+        assert words in page
+    assert "0.000000" not in page

@@ -15,7 +15,8 @@ def listen(
         typer.Argument(
             metavar="FILE...",
             help="A recording: WAV, FLAC, OGG, MP3, AIFF, M4A with ffmpeg; or times: CSV, TXT, XLSX. Several "
-            "files, or several drops in one, are drops of one ball and are combined.",
+            "files, or several drops in one, are drops of one ball and are combined; files of different "
+            "folders are those of the tables of a class.",
         ),
     ],
     diameter: Annotated[

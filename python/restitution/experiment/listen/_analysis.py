@@ -158,8 +158,9 @@ class Series(Content):
         the errors of the times are not known.
     note : str
         What is known of these errors where the table did not give them.
-    drops : int
-        Number of series that are combined in it.
+    drops, tables : int
+        Number of series that are combined in it, and of folders they come from: those of the tables of a
+        class, each with a ball and a plate of its own.
     """
 
     number: int
@@ -169,6 +170,7 @@ class Series(Content):
     shape: Shape | None
     note: str = ""
     drops: int = 1
+    tables: int = 1
 
     @property
     def coefficients(self) -> int:
@@ -184,8 +186,9 @@ class Series(Content):
         number = int(np.isfinite(self.data.time).sum())
         timed = f"timed to {digits(error)} µs (standard error)" if error else "with times of unknown error"
         drops = f" in {self.drops} drops" if self.drops > 1 else ""
+        what = "a ball" if self.tables == 1 else f"balls at {self.tables} tables,"
         begin = (
-            f"From the {'sound' if heard_in(self.heard) else 'times'} of {number} impacts{drops} of a ball "
+            f"From the {'sound' if heard_in(self.heard) else 'times'} of {number} impacts{drops} of {what} "
             f"of {1e3 * setting.diameter:g} mm diameter, {timed}"
         )
         if not known.any():
@@ -208,12 +211,17 @@ class Series(Content):
             f"{with_error(mean.parameters['restitution'], mean.errors['restitution'])}"
         )
         if mean.scatter_error > 0.0:
-            text += (
-                f", with a scatter of {with_error(mean.scatter, mean.scatter_error)} from impact to impact"
-            )
+            text += f", with a scatter of {spread(mean.scatter, mean.scatter_error)} from impact to impact"
             text += " that errors of the times do not explain" if error else ""
+        between = "between drops"
+        if self.tables == self.drops:
+            between = "between tables"
+        elif self.tables > 1:
+            between = "between drops at one table"
         if mean.between_error > 0.0:
-            text += f", and of {with_error(mean.between, mean.between_error)} between drops"
+            text += f", and of {spread(mean.between, mean.between_error)} {between}"
+        if mean.between_groups_error > 0.0:
+            text += f", and of {spread(mean.between_groups, mean.between_groups_error)} between tables"
         text += "; air drag is accounted for" if setting.mass is not None else "; air drag is neglected"
         if setting.contact_time is None:
             most = digits(1e6 * setting.contact.uncertainty)
@@ -263,7 +271,13 @@ class Analysis(Content):
     @property
     def file(self) -> str:
         """Names of the files."""
-        return ", ".join(one.path.name for one in self.recordings)
+        return ", ".join(map(self.named, self.recordings))
+
+    def named(self, recording: Recording) -> str:
+        """Return the name of a file, with its folder where there are several."""
+        several = len({one.path.parent for one in self.recordings}) > 1
+        path = recording.path
+        return f"{path.parent.name}/{path.name}" if several else path.name
 
     @property
     def series(self) -> tuple[Series, ...]:
@@ -340,7 +354,7 @@ class Analysis(Content):
                 continue
             values = [float(one[name]) for name in names]
             numbers = ["" if math.isnan(value) else f"{value:.9g}" for value in values]
-            file = [self.recordings[int(one.file)].path.name] if several else []
+            file = [self.named(self.recordings[int(one.file)])] if several else []
             writer.writerow([*file, int(one.series), FLAGS[int(one.flag)], *numbers])
         return text.getvalue()
 
@@ -373,7 +387,7 @@ def analyse(file: Path | Sequence[Path], setting: Setting) -> Analysis:
         _recording(path, heard, told, setting) for path, (heard, told) in zip(paths, found, strict=True)
     )
     several = [
-        one
+        (one, each.path.parent)
         for each in recordings
         for one in each.series
         if one.coefficients >= _FEWEST_FOR_SCATTER and one.fits
@@ -451,15 +465,18 @@ def _series(heard: xr.Dataset, number: int, setting: Setting, told: Separation, 
     return Series(number, rows, data, _ordered(fits), None, told.words)
 
 
-def _together(several: list[Series], setting: Setting) -> Series:
-    """Combine drops: one fit with a scatter between them, one posterior."""
+def _together(found: list[tuple[Series, Path]], setting: Setting) -> Series:
+    """Combine drops: one fit with a scatter between them and between tables, one posterior of one ball."""
+    several, folders = [one for one, _ in found], [folder for _, folder in found]
+    tables = len(set(folders))
     parts = [one.data for one in several]
     data = xr.concat(
         [one.drop_dims("other_impact") for one in parts], "impact", combine_attrs="drop_conflicts"
     )
-    fits = _ordered(_fitted(parts, "fit"))
+    fits = _ordered(_fitted(parts, "fit", folders))
     heard = xr.concat([one.heard for one in several], "impact", combine_attrs="override")
-    return Series(0, heard, data, fits, _shape(parts, fits, setting), drops=len(several))
+    shape = _shape(parts, fits, setting) if tables == 1 else None
+    return Series(0, heard, data, fits, shape, drops=len(several), tables=tables)
 
 
 def _ordered(fits: list[flight.LawFit]) -> tuple[flight.LawFit, ...]:
@@ -497,12 +514,16 @@ def _coefficients(rows: xr.Dataset, setting: Setting, *, first: bool) -> xr.Data
     )
 
 
-def _fitted(data: xr.Dataset | list[xr.Dataset], scatter: float | Literal["fit"]) -> list[flight.LawFit]:
+def _fitted(
+    data: xr.Dataset | list[xr.Dataset],
+    scatter: float | Literal["fit"],
+    groups: Sequence[Path] | None = None,
+) -> list[flight.LawFit]:
     """Fit all laws that the number and errors of the coefficients allow."""
     fits = []
     for law in _LAWS:
         try:
-            fits.append(flight.fit(data, law, scatter=scatter))
+            fits.append(flight.fit(data, law, scatter=scatter, groups=groups))
         except TooLargeError:
             raise
         except ParameterError:  # too few coefficients for this one
@@ -584,6 +605,11 @@ def _warnings(analysis: Analysis) -> list[str]:
         if analysis.together is not None and not (one.fits and one.coefficients >= _FEWEST_FOR_SCATTER):
             found.append(f"{name}{one.coefficients} coefficients, too few to be combined with the others.")
     return found + [text for one in analysis.recordings for text in _lossy(one.path)]
+
+
+def spread(value: float, error: float) -> str:
+    """Write a scatter with its error, or what it is below where it may be none."""
+    return with_error(value, error) if value > error else f"less than {digits(value + 2.0 * error)}"
 
 
 def _named(one: Series, several: bool) -> str:

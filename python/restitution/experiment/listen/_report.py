@@ -22,6 +22,7 @@ from restitution.experiment.listen._analysis import (
     checked,
     heard_in,
     paths_of,
+    spread,
 )
 from restitution.experiment.listen._figures import close_ups, drawn_shape, waveform
 from restitution.experiment.listen._shape import Shape
@@ -66,17 +67,19 @@ def _page(analysis: Analysis) -> str:
     sections = []
     if analysis.together is not None:
         words = f"{analysis.together.drops} drops together"
-        sections.append(Section("together", words, _series(analysis.together, setting, analysis.series)))
+        parts = _series(analysis.together, setting, analysis.series)
+        sections.append(Section("together", words, [*parts[:1], _drops(analysis), *parts[1:]]))
     for place, one in enumerate(analysis.recordings):
         title = "The recording" if heard_in(one.heard) else "The times"
-        title, key = (one.path.name, f"-{place}") if several else (title, "")
-        sections.append(Section(f"recording{key}", title, _recording(one, setting)))
+        title, key = (analysis.named(one), f"-{place}") if several else (title, "")
+        parts = _recording(one, setting)
+        sections.append(Section(f"recording{key}", title, _folded("Sound and set-up", parts, several)))
     for series in analysis.series:
         alone = len(analysis.series) == 1
         title = "Coefficient of restitution" if alone else f"Series {series.number}"
         parts = _series(series, setting)
         if analysis.together is not None:
-            parts.insert(0, paragraph(series.sentence(setting)))
+            parts = [paragraph(series.sentence(setting)), *_folded("Coefficients and laws", parts, True)]
         sections.append(Section(f"series-{series.number}", title, parts))
     for shown in analysis.answers:
         if shown.shape is not None:
@@ -93,6 +96,30 @@ def _page(analysis: Analysis) -> str:
         sections,
         f"Made by restitution {version('restitution')}.",
     )
+
+
+def _folded(summary: str, parts: list[str], fold: bool) -> list[str]:
+    """Put details behind a line that opens them."""
+    if not fold:
+        return parts
+    return [f"<details><summary>{text(summary)}</summary>", *parts, "</details>"]
+
+
+def _drops(analysis: Analysis) -> str:
+    """Make a table with the mean and the scatter of each drop, by file."""
+    rows = []
+    for recording in analysis.recordings:
+        for one in recording.series:
+            mean = next((fit for fit in one.fits if fit.law == "constant"), None)
+            cells = ["–", "–"]
+            if mean is not None:
+                cells[0] = with_error(mean.parameters["restitution"], mean.errors["restitution"])
+            if mean is not None and mean.scatter_error > 0.0:
+                cells[1] = spread(mean.scatter, mean.scatter_error)
+            rows.append([text(analysis.named(recording)), str(one.number), str(one.coefficients), *cells])
+    caption = "The drops by themselves. The scatter is what errors of measurement do not explain."
+    head = ["file", "series", "coefficients", "mean ε", "scatter of ε"]
+    return table(head, rows, caption=caption, numbers=(1, 2))
 
 
 def _recording(given: Recording, setting: Setting) -> list[str]:
@@ -143,10 +170,10 @@ def _series(one: Series, setting: Setting, drops: Sequence[Series] = ()) -> list
         rows = []
         for fit in one.fits:
             parameters = ", ".join(map(" ".join, fit.estimates()))
-            spread = with_error(fit.scatter, fit.scatter_error) if fit.scatter_error > 0.0 else "none fitted"
+            scatter = spread(fit.scatter, fit.scatter_error) if fit.scatter_error > 0.0 else "none fitted"
             chance = "" if fit.scatter_error > 0.0 else f"{fit.p_value:.2g}"
             quality = f"{fit.chi2:.1f}/{fit.degrees_of_freedom}"
-            cells = [text(fit.law), text(parameters), text(spread), quality, chance, f"{fit.aic - best:.1f}"]
+            cells = [text(fit.law), text(parameters), text(scatter), quality, chance, f"{fit.aic - best:.1f}"]
             rows.append(cells)
         caption = "Laws, the best first. The scatter is what errors of measurement do not explain."
         head = ["law", "parameters", "scatter of ε", "χ²/n", "p", "ΔAIC"]
