@@ -34,7 +34,8 @@ def test_a_run_that_pauses_has_the_same_bits(
     heating: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its file is written whenever it can be; other threads go on, and a finished run is read."""
-    whole = rs.gas.cool(dumbbell(1.0), SMOOTH, heating=heating, threads=1, **GAS)
+    how = GAS | {"particles": 4000, "heating": heating}
+    whole = rs.gas.cool(dumbbell(1.0), SMOOTH, threads=1, **how)
     monkeypatch.setattr(_cool, "_EACH", 0.0)
     written = []
 
@@ -45,9 +46,9 @@ def test_a_run_that_pauses_has_the_same_bits(
     monkeypatch.setattr(_cool, "save", counted)
     for threads in (2, 1):
         file = tmp_path / "gas.nc"
-        found = rs.gas.cool(dumbbell(1.0), SMOOTH, heating=heating, threads=threads, checkpoint=file, **GAS)
+        found = rs.gas.cool(dumbbell(1.0), SMOOTH, threads=threads, checkpoint=file, **how)
         xr.testing.assert_identical(found, whole)
-    assert len(written) > 2
+    assert len(written) > 1
 
 
 def test_ctrl_c_loses_nothing(tmp_path: Path) -> None:

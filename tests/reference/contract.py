@@ -52,8 +52,12 @@ WORKINGS = {
     "distribution.quantiles",
     "distribution.sealed",
     "flight.LawFit.estimates",
+    "gases.Table",
+    "gases.redraw",
+    "gases.tables",
     "laws.Material",
     "laws.check_steady",
+    "listen.Analysis.named",
     "listen.Setting",
     "study.Study.where",
 }
