@@ -60,7 +60,7 @@ test:  ## every check: Rust format, clippy, Rust tests, ruff, mypy, the explorer
 	$(MAKE) --jobs=2 $(STAMP) rust-tests
 	$(MAKE) --jobs=2 lint
 	$(MAKE) --jobs=2 test-rust test-web
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder
 
 # Of each folder something that takes no long; with what has been built and checked before, three minutes.
 QUICK := bodies/test_bodies cli/test_commands distribution/test_table drop/test_engine drop/test_bad_input drop/test_rigid \

@@ -354,6 +354,7 @@ def test_drops_in_several_files_give_one_answer(tmp_path: Path, monkeypatch: pyt
     assert np.isnan(data.restitution_covariance.values[5, 20])
 
 
+@pytest.mark.slow
 def test_a_class_has_one_number_and_what_differs_between_tables(tmp_path: Path) -> None:
     """Eight tables in folders, two drops each, plates that differ by 0.002: that is the error of the mean."""
     rng, files = np.random.default_rng(3), []
