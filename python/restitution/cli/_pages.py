@@ -1,5 +1,7 @@
 """`restitution paper`, `rough`, `gas-figures` and `laws`: figures, data and reports in a folder."""
 
+from importlib import import_module
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -29,12 +31,7 @@ def paper(
     proof, and every claim of the paper with the measured number, its standard
     error and a verdict.
     """
-    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
-        from restitution.papers.glielmo2014 import redraw
-
-        report = redraw(out, impacts, seed, threads, progress(quiet), overwrite=overwrite)
-        if not quiet:
-            say(str(report))
+    _redraw("glielmo2014", out, impacts, seed, threads, quiet, overwrite=overwrite)
 
 
 def rough(
@@ -55,12 +52,7 @@ def rough(
     HTML page that needs nothing else, with every claim, the measured number,
     its standard error and a verdict.
     """
-    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
-        from restitution.papers.gunkelmann2014 import redraw
-
-        report = redraw(out, impacts, seed, threads, progress(quiet), overwrite=overwrite)
-        if not quiet:
-            say(str(report))
+    _redraw("gunkelmann2014", out, impacts, seed, threads, quiet, overwrite=overwrite)
 
 
 def gas_figures(
@@ -80,10 +72,16 @@ def gas_figures(
     the limit of round grains, spheres that draw their restitution, friction, and
     every claim with the measured number, its standard error and a verdict.
     """
-    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
-        from restitution.papers.gases import redraw
+    _redraw("gases", out, particles, seed, threads, quiet, overwrite=overwrite)
 
-        report = redraw(out, particles, seed, threads, progress(quiet), overwrite=overwrite)
+
+def _redraw(
+    paper: str, out: Path, size: int, seed: int, threads: int | None, quiet: bool, *, overwrite: bool
+) -> None:
+    """Redraw one of `restitution.papers`, and say where its report is."""
+    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
+        redraw = import_module(f"restitution.papers.{paper}").redraw
+        report = redraw(out, size, seed, threads, progress(quiet), overwrite=overwrite)
         if not quiet:
             say(str(report))
 

@@ -241,7 +241,8 @@ def cool(
     path = None if checkpoint is None else path_for("checkpoint", checkpoint, NETCDF)
     room = _PARTICLE * (1 + (record == "state") + 2 * (path is not None))
     check_size("particles", total, total, room, "particles")
-    table, last = _follow(kinds, law, course, checked_threads(threads), given, path, show=progress)
+    expected = round(course["collisions"] * total / 2)
+    table, last = _follow(kinds, law, course, checked_threads(threads), given, path, expected, show=progress)
     data = _dataset(kinds, table, total)
     if record == "state":
         data = data.assign(_state(kinds, last, number))
@@ -267,16 +268,15 @@ def _follow(
     threads: int,
     given: FloatArray | None,
     path: Path | None,
+    expected: int,
     *,
     show: bool,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the looks at a gas and its last states; what `path` keeps is gone on from."""
-    total = sum(kind.particles // course["batches"] * course["batches"] for kind in kinds)
     rows = [(kind.body.compiled, *kind[1:]) for kind in kinds]
     text = repr((made_here("")["version"], [(str(kind.body), *kind[1:]) for kind in kinds], str(law), course))
     mark = hashlib.sha256(text.encode() + (b"" if given is None else given.tobytes())).hexdigest()
     store = None if path is None else _kept(path, mark)
-    expected = round(course["collisions"] * total / 2)
     with progress_bar("gas", expected, "collisions", show=show) as tell:
         while True:
             began = time.monotonic()
@@ -516,7 +516,7 @@ def _of_kind(
     """
     mass, turned = kind.body.mass, np.array(kind.turned)
     power = 2 * (told - own)
-    spins = power if turned.any() else 2 * told + 0 * own
+    spins = power if turned.any() else 2 * told
     energies = np.stack([means[f"rotational_{axis}"] for axis in "xyz"], axis=-1)
     translational = mass * means["speed_squared"] / 3.0
     axes = int(turned.sum())

@@ -34,12 +34,10 @@ class Paper(Generic[R, S]):
     sizes: Mapping[str, Callable[[xr.Dataset], str]] = field(default_factory=lambda: DROPPED)  # of a run
     errors: str = (
         "Impacts of one particle are correlated, so each particle counts as one draw in every standard "
-        "error, "
-        "and p-values rest on at most one impact of each particle at a speed."
+        "error, and p-values rest on at most one impact of each particle at a speed."
     )
     ends: str = (
         "A trajectory that collapses has infinitely many impacts in finite time; it ends there and nothing "
-        "is "
-        "regularised. Counted impacts are not recorded; the recorded run consists of the first particles of "
-        "the run of the same seed."
+        "is regularised. Counted impacts are not recorded; the recorded run consists of the first particles "
+        "of the run of the same seed."
     )

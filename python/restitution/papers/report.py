@@ -129,8 +129,7 @@ def _details(claims: Sequence[Claim], errors: str) -> list[str]:
     """Show every claim with its numbers and the rule of its verdict."""
     how = html.paragraph(
         f"Numbers are given ± one standard error. {errors} A difference is significant from {SIGNIFICANT:g} "
-        "standard errors; about one "
-        "report in a hundred then contains a spurious finding."
+        "standard errors; about one report in a hundred then contains a spurious finding."
     )
     cards = (
         f'<article id="{html.text(claim.key)}">\n'

@@ -119,10 +119,8 @@ def _sections(runs: Runs, s: Settings) -> Sequence[Section]:
         parts.append(html.table(tuple(map(html.prose, heads)), cells, caption=caption, numbers=numbers))
     about = html.paragraph(
         "A collision is an encounter with contact. “With E_rot” and “of v/√T_tr” are spheres that draw ε by "
-        "the "
-        "rules of the third figure. β: rough spheres with the same steady ratio by the theory of Huthmann "
-        "and "
-        "Zippelius (1997), and their rate; “none”: the ratio is not steady."
+        "the rules of the third figure. β: rough spheres with the same steady ratio by the theory of "
+        "Huthmann and Zippelius (1997), and their rate; “none”: the ratio is not steady."
     )
     return [Section("tables", "Tables", [*parts, about])]
 
@@ -130,10 +128,8 @@ def _sections(runs: Runs, s: Settings) -> Sequence[Section]:
 def _about(runs: Runs) -> str:
     return (
         "Homogeneous, dilute gases of grains, in which every encounter is followed exactly, by direct "
-        "simulation Monte "
-        f"Carlo; {grouped(runs.asked)} particles each. The claims are the last sentences of PRE 90, 052204, "
-        "and "
-        "what is published on gases of rough and of long grains."
+        f"simulation Monte Carlo; {grouped(runs.asked)} particles each. The claims are the last sentences of "
+        "PRE 90, 052204, and what is published on gases of rough and of long grains."
     )
 
 

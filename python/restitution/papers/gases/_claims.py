@@ -38,8 +38,8 @@ def substantial(runs: Runs, s: Settings) -> Finding:
         ),
         verdict(all(apart), any(apart)),
         "Holds if smooth dumbbells of every L/R cool, in a collision, more than a tenth faster or slower "
-        "than "
-        f"smooth spheres, by more than {SIGNIFICANT:g} standard errors; in part if some do; fails otherwise.",
+        f"than smooth spheres, by more than {SIGNIFICANT:g} standard errors; in part if some do; fails "
+        "otherwise.",
         f"A gas of nearly round grains, L/R = {s.slightly:g}, loses {1 / value:.1f} times less of its "
         f"temperature in a collision than one of spheres at ε_n = {s.normals[0]:g}.",
     )
@@ -78,10 +78,10 @@ def fluctuating(runs: Runs, s: Settings) -> Finding:
     return Finding(
         tuple(measured),
         verdict(all(good["scaled"]), all(good["kernel"][: len(s.elongations) - 1])),
-        "Rates are of -ln T_tr over the collisions of a particle, of smooth spheres 1. Holds if spheres that "
-        f"draw ε at v in thermal speeds cool as the grains to {100 * _NEAR:g} % at every L/R; in part if "
-        "they do "
-        f"where the change of E_rot is drawn too, up to L/R = {s.elongations[-2]:g}; fails otherwise.",
+        "Rates are of -ln T_tr over the collisions of a particle, of smooth spheres 1. Holds if spheres "
+        f"that draw ε at v in thermal speeds cool as the grains to {100 * _NEAR:g} % at every L/R; in part "
+        f"if they do where the change of E_rot is drawn too, up to L/R = {s.elongations[-2]:g}; fails "
+        "otherwise.",
         "ε as a function of v alone stops the gas at a temperature that nothing in it sets, or cools it as "
         "spheres; ε together with the change of E_rot, at the T_rot/T_tr of the gas, cools it as the grains.",
     )
@@ -90,12 +90,10 @@ def fluctuating(runs: Runs, s: Settings) -> Finding:
 @CLAIMS.add(
     "two-stages",
     "cooling of both rough spheres and smooth needles proceeds in two stages: An exponentially fast decay "
-    "to a "
-    "state with stationary ratio of translational and rotational energy and a subsequent algebraic decay of "
-    "the total energy",
+    "to a state with stationary ratio of translational and rotational energy and a subsequent algebraic "
+    "decay of the total energy",
     "Aspelmeier, Huthmann and Zippelius, Free cooling of particles with rotational degrees of freedom "
-    "(2000); "
-    "needles: Huthmann, Aspelmeier and Zippelius, PRE 60, 654 (1999)",
+    "(2000); needles: Huthmann, Aspelmeier and Zippelius, PRE 60, 654 (1999)",
 )
 def two_stages(runs: Runs, s: Settings) -> Finding:
     measured, steady, powers = [], [], []
@@ -132,9 +130,8 @@ def two_stages(runs: Runs, s: Settings) -> Finding:
         tuple(measured),
         verdict(all(steady) and all(powers), all(steady)),
         f"Smooth dumbbells, ε_n = {s.normals[0]:g}, second half of the collisions. Holds if ln(T_rot/T_tr) "
-        "changes by "
-        "less than 0.05 and T_tr falls with a power of t + τ within 0.05 of -2, for every L/R but the "
-        "smallest; in part if the first; fails otherwise.",
+        "changes by less than 0.05 and T_tr falls with a power of t + τ within 0.05 of -2, for every L/R "
+        "but the smallest; in part if the first; fails otherwise.",
         f"So do dumbbells. The first stage is long for round ones: from T_rot = 0 it takes {reached:.0f} "
         f"collisions of a particle at L/R = {s.elongations[0]:g}.",
     )
@@ -166,8 +163,7 @@ def rough_spheres(runs: Runs, s: Settings) -> Finding:
         tuple(measured),
         verdict(all(near), any(near)),
         f"Spheres with ε = {s.rough_normal:g}. Holds if T_rot/T_tr is that of the theory to 5 % for each β; "
-        "in "
-        "part for some; fails otherwise.",
+        "in part for some; fails otherwise.",
         "Where spins exchange little, those of a few particles stay hot (a₀₂), and the ratio is below the "
         f"Maxwellian one: by {100 * (1 - measured[0].value / measured[1].value):.0f} % at {measured[0].at}.",
     )
@@ -178,8 +174,7 @@ def rough_spheres(runs: Runs, s: Settings) -> Finding:
     "spins mostly perpendicular to the velocity ('sliced tennis ball'), parallel ('rifled bullet') only in a "
     "small range of the parameters [our words]",
     "Brilliantov et al., PRL 98, 128001 (2007), DOI 10.1103/PhysRevLett.98.128001; Kranz et al., EPJ ST "
-    "179, 91 "
-    "(2009), DOI 10.1140/epjst/e2010-01196-0",
+    "179, 91 (2009), DOI 10.1140/epjst/e2010-01196-0",
 )
 def tennis_balls(runs: Runs, s: Settings) -> Finding:
     found = {value: late(data, "cos2_velocity_spin") for value, data in runs.rough.items()}
@@ -192,9 +187,8 @@ def tennis_balls(runs: Runs, s: Settings) -> Finding:
         ),
         verdict(any(below) and not any(above), not any(above)),
         f"Spheres with ε = {s.rough_normal:g}. Holds if <cos²> between velocity and spin is below 1/3 by "
-        "more than "
-        f"two standard errors for some β and above it by {SIGNIFICANT:g} for none; in part if for none; "
-        "fails otherwise.",
+        f"more than two standard errors for some β and above it by {SIGNIFICANT:g} for none; in part if for "
+        "none; fails otherwise.",
         "Spins are more often across the velocity, by less than a hundredth.",
     )
 
@@ -202,10 +196,8 @@ def tennis_balls(runs: Runs, s: Settings) -> Finding:
 @CLAIMS.add(
     "friction",
     "for small ε and small μ, the dissipation of rotational energy is suppressed, so that the asymptotic "
-    "state is "
-    "characterized by constant rotational energy while the translational energy continues to decay; ε close "
-    "to 1 "
-    "and large μ: a constant ratio of rotational and translational energies",
+    "state is characterized by constant rotational energy while the translational energy continues to "
+    "decay; ε close to 1 and large μ: a constant ratio of rotational and translational energies",
     "Herbst, Huthmann and Zippelius, Granular Matter 2, 211 (2000)",
 )
 def friction(runs: Runs, s: Settings) -> Finding:
@@ -228,9 +220,8 @@ def friction(runs: Runs, s: Settings) -> Finding:
         tuple(measured),
         verdict(stays and alike, stays or alike),
         f"Spheres, ε_n = {s.normals[1]:g} and μ = {s.frictions[0]:g}, and {s.normals[0]:g} and "
-        f"{s.frictions[-1]:g}; second half "
-        "of the collisions. Holds if T_rot falls less than a tenth as fast as T_tr in the first, and as fast "
-        "to a tenth in the second; in part if one; fails otherwise.",
+        f"{s.frictions[-1]:g}; second half of the collisions. Holds if T_rot falls less than a tenth as "
+        "fast as T_tr in the first, and as fast to a tenth in the second; in part if one; fails otherwise.",
         "Rotation stays where contacts slide to their end, and falls with translation where most end by "
         "rolling.",
     )
@@ -239,10 +230,8 @@ def friction(runs: Runs, s: Settings) -> Finding:
 @CLAIMS.add(
     "rods",
     "energy equipartition between rotational and translational degrees of freedom was better satisfied as "
-    "one gets "
-    "closer to the elastic limit; scaled particle velocity distributions remain approximately Gaussian "
-    "regardless "
-    "of the particle shape",
+    "one gets closer to the elastic limit; scaled particle velocity distributions remain approximately "
+    "Gaussian regardless of the particle shape",
     "Rubio-Largo et al., Physica A 443, 477 (2016)",
 )
 def rods(runs: Runs, s: Settings) -> Finding:
@@ -263,8 +252,8 @@ def rods(runs: Runs, s: Settings) -> Finding:
         ),
         verdict(all(nearer) and all(gaussian), all(nearer) or all(gaussian)),
         f"Smooth rods, {', '.join(f'{x:g}' for x in s.rods)} diameters long. Holds if ln(T_rot/T_tr) at ε_n "
-        f"= {first:g} is "
-        f"nearer to 0 than at {second:g}, to 0.02, and a₂₀ at most 0.03; in part if one; fails otherwise.",
+        f"= {first:g} is nearer to 0 than at {second:g}, to 0.02, and a₂₀ at most 0.03; in part if one; "
+        "fails otherwise.",
         f"T_rot/T_tr is {', '.join(f'{found[x, first][0]:.2f}' for x in s.rods)} at ε_n = {first:g} and "
         f"{', '.join(f'{found[x, second][0]:.2f}' for x in s.rods)} at {second:g}.",
     )
@@ -272,10 +261,9 @@ def rods(runs: Runs, s: Settings) -> Finding:
 
 @CLAIMS.add(
     "rods-in-flight",
-    "We compare kinetic energies in the individual degrees of freedom, and find a slight predominance of the "
-    "translational motions. In addition, we detect a certain preference of the grains to align with their "
-    "long "
-    "axis in flight direction",
+    "We compare kinetic energies in the individual degrees of freedom, and find a slight predominance of "
+    "the translational motions. In addition, we detect a certain preference of the grains to align with "
+    "their long axis in flight direction",
     "Harth et al., PRL 120, 214301 (2018), DOI 10.1103/PhysRevLett.120.214301, an experiment",
 )
 def rods_in_flight(runs: Runs, s: Settings) -> Finding:
@@ -288,10 +276,8 @@ def rods_in_flight(runs: Runs, s: Settings) -> Finding:
         ),
         verdict(less and aligned, less),
         f"Rods of {s.rods[-1]:g} diameters, ε_n = {s.long_normal:g}, μ = {s.long_friction:g}. Holds if "
-        "T_rot/T_tr across the "
-        f"axis is below 1 and <cos²> of velocity and axis above 1/3 by {SIGNIFICANT:g} standard errors; in "
-        "part if the "
-        "first; fails otherwise.",
+        "T_rot/T_tr across the axis is below 1 and <cos²> of velocity and axis above 1/3 by "
+        f"{SIGNIFICANT:g} standard errors; in part if the first; fails otherwise.",
         "Translation has more energy; "
         + ("rods fly along their axis." if aligned else "no alignment is seen."),
     )
@@ -313,8 +299,7 @@ def two_thirds(runs: Runs, s: Settings) -> Finding:
         ),
         verdict(tight[0] < 2 / 3 < lossy[0], abs(np.log(1.5 * tight[0])) < 0.3),
         f"Holds if 2/3 is between the ratios of spheres with μ = 0.5 at ε_n = {s.normals[0]:g} and "
-        f"{s.lossy:g}; in part if "
-        "the first is within a third of it; fails otherwise.",
+        f"{s.lossy:g}; in part if the first is within a third of it; fails otherwise.",
         "Such spheres have it for an ε_n between.",
     )
 
@@ -324,8 +309,7 @@ def two_thirds(runs: Runs, s: Settings) -> Finding:
     "the kinetic energy dropped to about 5% of its initial value [after] three times the Haff time",
     "Trittel et al. (2024); Haff's law for ellipsoids: Pitikaris et al., npj Microgravity 8, 11 (2022), "
     "DOI 10.1038/s41526-022-00196-6; for planar dimers: Costantini et al., J. Chem. Phys. 122, 164505 "
-    "(2005), "
-    "DOI 10.1063/1.1884999",
+    "(2005), DOI 10.1063/1.1884999",
 )
 def haff(runs: Runs, s: Settings) -> Finding:
     measured, near = [], []
@@ -343,7 +327,6 @@ def haff(runs: Runs, s: Settings) -> Finding:
         tuple(measured),
         verdict(all(near), any(near)),
         f"Smooth dumbbells, ε_n = {s.normals[0]:g}; Haff's law has 1/16. Holds if what is left is this to "
-        "30 % for every "
-        "L/R but the smallest; in part for some; fails otherwise.",
+        "30 % for every L/R but the smallest; in part for some; fails otherwise.",
         f"What is left is {', '.join(f'{100 * m.value:.1f} %' for m in measured)}.",
     )

@@ -104,9 +104,8 @@ def _ours(s: Settings) -> list[str]:
 def _explain_cooling(drawn: xr.Dataset, s: Settings) -> Caption:
     return _Caption(
         f"Gases of smooth dumbbells, ε_n = {s.normals[0]:g}: (a) temperature of translation, (b) over it "
-        "that "
-        "of rotation about the axes across. Points: every encounter followed. Lines: kinetic theory for "
-        f"Maxwellians. Dashes: smooth spheres. Dots: L/R = {s.elongations[0]:g} from T_rot = 0.",
+        "that of rotation about the axes across. Points: every encounter followed. Lines: kinetic theory "
+        f"for Maxwellians. Dashes: smooth spheres. Dots: L/R = {s.elongations[0]:g} from T_rot = 0.",
         [f"L/R = {s.slightly:g}"],
         [f"L/R = {listing(s.elongations)}", *_ours(s)],
     )
@@ -242,10 +241,9 @@ def _draw_spheres(drawn: xr.Dataset, *, style: Style | None = None) -> Figure:
 def _explain_spheres(drawn: xr.Dataset, s: Settings) -> Caption:
     return _Caption(
         f"Temperature of translation of smooth dumbbells, ε_n = {s.normals[0]:g}, and of spheres that draw "
-        "their ε, by four rules: (a) L/R = "
-        f"{float(drawn['shown'][0]):g}, (b) {float(drawn['shown'][1]):g}. (c) How fast it falls in the "
-        "second "
-        f"half, over that of smooth spheres; filled: ε_n = {s.normals[0]:g}, open: {s.normals[1]:g}.",
+        f"their ε, by four rules: (a) L/R = {float(drawn['shown'][0]):g}, (b) {float(drawn['shown'][1]):g}. "
+        "(c) How fast it falls in the second half, over that of smooth spheres; filled: ε_n = "
+        f"{s.normals[0]:g}, open: {s.normals[1]:g}.",
         [f"L/R = {s.slightly:g}", "p(ε|v) of a body on a plane"],
         [f"dropped from {s.drop:g} m on the plane", f"√(T_tr/m) = {s.speed:.2g} m/s at first", *_ours(s)],
     )
@@ -317,8 +315,7 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
         "Steady ratio of the temperatures, and its singular limit",
         "T_rot/T_tr over ε_n and over L/R",
         "The ratio is near 1 for long grains and grows as (R/L)² for round ones; the closure is good to a "
-        "few "
-        "hundredths.",
+        "few hundredths.",
         _ratios,
         _draw_ratios,
         _explain_ratios,
@@ -339,8 +336,7 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
         "Grains with Coulomb friction",
         "T_rot/T_tr over μ of spheres and of dumbbells",
         "Only for large μ and ε_n near 1 is the ratio of spheres steady; else rotation stays. The rotation "
-        "of "
-        "dumbbells across their axis has a steady temperature at any μ.",
+        "of dumbbells across their axis has a steady temperature at any μ.",
         _friction,
         _draw_friction,
         _explain_friction,
