@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import restitution as rs
 from restitution._internal.text import digits
 from restitution.experiment.inference import _posterior
 from restitution.experiment.inference._table import Table
+from restitution.experiment.inference._verdict import agreeing, disagreement, judge
 
 LAW = rs.Coulomb(normal=0.93, friction=0.1)
 SHAPES = np.geomspace(0.03, 0.3, 9)
@@ -186,3 +188,81 @@ def test_what_to_install_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     said = r"^a posterior needs ArviZ's arviz-base: pip install 'restitution\[measure\]'$"
     with pytest.raises(ImportError, match=said):
         rs.posterior(xr.Dataset(), LAW, diameter=6e-3)
+
+
+def peak(height: float, noise: float) -> Table:
+    """A likelihood with a peak of this height over its low end, along ln L/R or ln of a height."""
+    line = np.linspace(-7.0, -1.0, 61)
+    values = height * np.exp(-0.5 * ((line + 3.0) / 0.5) ** 2) + np.zeros((9, 1))
+    return Table((np.linspace(0.9, 0.96, 9), line), values, best=height, noise=noise)
+
+
+def test_no_verdict_rests_on_the_noise_of_the_likelihood() -> None:
+    """Asperities are better than a shape by e⁵: strong evidence, unless ln of it is known to 2.8 only."""
+    shape = peak(20.0, 0.0)
+    assert judge(shape, peak(25.0, 0.0), shape, scatters=False).cause == "roughness"
+    unsure = judge(shape, peak(25.0, 8.0), shape, scatters=False)
+    assert (unsure.cause, unsure.surface) == ("surface", "surface")
+    assert unsure.error == pytest.approx(8.0**0.5)
+    assert judge(shape, peak(40.0, 8.0), shape, scatters=False).cause == "roughness"
+
+
+def test_a_kind_of_ball_that_gives_the_times_is_no_disagreement() -> None:
+    """The likeliest balls, rough ones, do not scatter so; a shape, hardly less likely, does."""
+    wrong = (1e-4, 0.5, 0.5, 0.5)
+    shape, rough = peak(20.0, 0.0), replace(peak(21.0, 0.0), signs=wrong)
+    assert disagreement(agreeing(shape, rough)) == ""
+    assert disagreement(rough).startswith("No ball of this kind gives the observed scatter")
+    assert agreeing(peak(10.0, 0.0), rough) is rough
+
+
+@pytest.mark.parametrize(
+    ("normal", "power"),
+    [
+        (0.9, 0.0),
+        (
+            rs.Viscoelastic(young_modulus=1e7, poisson_ratio=0.3, dissipation=1e-4, density=1e3, radius=3e-3),
+            -0.2,
+        ),
+        (rs.Plastic(yield_speed=0.5), 1.0),
+    ],
+)
+def test_errors_of_g_and_of_the_clock_are_one_factor_of_all_speeds(
+    monkeypatch: pytest.MonkeyPatch, normal: Any, power: float
+) -> None:
+    """ε_n is a function of v/v_y and of β v^(1/5), and a ratio of times knows no speed."""
+
+    def known(_: Any, __: Any, ___: Any, elongations: Any, *rest: Any) -> Table:
+        axes = (np.linspace(0.93, 0.9301, 3), np.log(elongations))
+        return Table(axes, np.zeros((3, elongations.size)))
+
+    monkeypatch.setattr(_posterior, "table", known)
+    times = np.append(0.0, np.cumsum(0.28 * 0.93 ** np.arange(14)))
+    data = rs.flight.restitution(times, 1e-5, gravity_uncertainty=0.03 * 9.81, clock_uncertainty=0.04)
+    law = rs.Frictionless(normal=normal)
+    tree = rs.posterior(
+        data, law, diameter=6e-3, elongation=(0.03, 0.3), scatter=None, roughness=0.0, draws=4000
+    )
+    name = next(iter(tree["posterior"].data_vars))
+    spread = float(np.log(tree["posterior"].to_dataset()[name]).std())
+    assert spread == pytest.approx(abs(power) * 0.05, rel=0.05, abs=1e-4)
+
+
+def test_a_factor_of_g_acts_on_the_shape_as_one_of_the_diameter() -> None:
+    """Times of a fall scale as √(R/g): an error of 0.003 of g is one of 0.003 of the diameter to L/R."""
+    rng = np.random.default_rng(4)
+    times = np.append(0.0, np.cumsum(0.28 * np.cumprod(0.93 + 0.005 * rng.standard_normal(14))))
+    trees = [
+        rs.posterior(
+            rs.flight.restitution(times, 2e-5, gravity=scale * 9.81),
+            LAW,
+            diameter=scale * 6e-3,
+            elongation=(0.02, 0.2),
+            scatter=None,
+            particles=100,
+            draws=400,
+        )["posterior"].to_dataset()
+        for scale in (1.0, 4.0)
+    ]
+    for name in ("normal", "elongation"):
+        np.testing.assert_allclose(trees[0][name], trees[1][name], rtol=1e-9)

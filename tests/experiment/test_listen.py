@@ -93,6 +93,9 @@ def test_the_page_needs_nothing_else_and_shows_everything(report: tuple[Path, st
     assert len([source for source in page.sources if source.startswith("data:image/png")]) == 5
     assert all(source.startswith("data:") or source == "#top" for source in page.sources)
     laws = ("constant", "power law", "viscoelastic", "plastic")
+    [line] = re.findall(r"ε\s=\s0\.\d+\s±\s0\.\d+\s*The mean between .*", page.words)  # the answer first
+    assert page.words.index(line) < page.words.index("From the sound of 16 impacts")
+    assert "A sphere explains the times; out of round by less than" in line
     for words in ("ball.wav", "44100 Hz", "20 mm", *laws, "Shape of the ball", "Error budget"):
         assert words in page.words
 
@@ -376,6 +379,7 @@ def test_a_class_has_one_number_and_what_differs_between_tables(tmp_path: Path) 
     assert found.together is not None
     assert found.together.shape is None  # of balls of their own
     page = (tmp_path / "class.html").read_text(encoding="utf-8")
+    assert "Tables differ by 0.00" in page
     for words in ("table0/drop0.csv", "table7/drop1.csv", "The drops by themselves"):
         assert words in page
     assert "0.000000" not in page

@@ -38,6 +38,11 @@ class Family:
         return "normal" if self.of_speed.name == "constant" else self.of_speed.parameters[0]
 
     @property
+    def power(self) -> float:
+        """The power of a speed that the parameter of ε_n goes as, where ε_n at all speeds is the same."""
+        return {"normal": 0.0, "beta": -0.2, "yield_speed": 1.0}[self.parameter]
+
+    @property
     def range(self) -> tuple[float, float]:
         """Between what the parameter is."""
         return (0.0, 1.0) if self.parameter == "normal" else (0.0, np.inf)

@@ -85,18 +85,31 @@ class Density:
         """Return ln p of the numbers, were these the true parameters, shape (m,)."""
         if not self.enough:
             return np.full(truths.shape, IMPOSSIBLE)
-        u = (numbers[0] - truths - self.middle) / self.scale
-        at = np.column_stack([np.arcsinh(u), np.tile(numbers[1:_COMPARED], (u.size, 1))])
-        white = np.linalg.solve(self.root, (at - self.mean).T).T
+        u, white, kernels, nearest = self._kernels(numbers, truths)
         d = white.shape[1]
-        distance = (
-            np.sum(white**2, axis=1)[:, None] - 2.0 * white @ self.points.T + np.sum(self.points**2, axis=1)
-        )
-        nearest = distance.min(axis=1)
-        weight = np.exp((nearest[:, None] - distance) / (2.0 * self.width**2)).mean(axis=1)
-        core = np.log(weight) - 0.5 * nearest / self.width**2 - d * math.log(self.width)
+        core = np.log(kernels.mean(axis=1)) - 0.5 * nearest / self.width**2 - d * math.log(self.width)
         wide = -0.5 * np.sum(white**2, axis=1) / 9.0 - d * math.log(3.0)
         both = np.logaddexp(math.log(1.0 - _STRAY) + core, math.log(_STRAY) + wide)
         # dy/ds of the arsinh.
         jacobian = -np.log(self.scale * np.sqrt(1.0 + u**2))
         return np.asarray(np.maximum(both + self.norm + jacobian + math.log(self.share), IMPOSSIBLE))
+
+    def variance(self, numbers: Array) -> float:
+        """Return the variance of ln p at the likeliest parameter if other series had been simulated.
+
+        It is Σw²/(Σw)² of the kernels w, one over the number of series that count.
+        """
+        truths = self.nodes(numbers)
+        _, _, (kernels,), _ = self._kernels(numbers, truths[[np.argmax(self(numbers, truths))]])
+        return float(np.sum(kernels**2) / np.sum(kernels) ** 2)
+
+    def _kernels(self, numbers: Array, truths: Array) -> tuple[Array, Array, Array, Array]:
+        """Return the scaled parameter, all numbers whitened, kernels over the largest, and its distance²."""
+        u = (numbers[0] - truths - self.middle) / self.scale
+        at = np.column_stack([np.arcsinh(u), np.tile(numbers[1:_COMPARED], (u.size, 1))])
+        white = np.linalg.solve(self.root, (at - self.mean).T).T
+        distance = (
+            np.sum(white**2, axis=1)[:, None] - 2.0 * white @ self.points.T + np.sum(self.points**2, axis=1)
+        )
+        nearest = distance.min(axis=1)
+        return u, white, np.exp((nearest[:, None] - distance) / (2.0 * self.width**2)), nearest

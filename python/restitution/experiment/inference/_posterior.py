@@ -29,7 +29,7 @@ from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._rough import PER_SHAPE, flights, over_heights
 from restitution.experiment.inference._series import NEEDED, Series, check_from_release
 from restitution.experiment.inference._table import Table, table
-from restitution.experiment.inference._verdict import disagreement, judge, sentence
+from restitution.experiment.inference._verdict import agreeing, answer, disagreement, judge, sentence
 from restitution.laws import Law, Material
 
 Array = npt.NDArray[np.float64]
@@ -88,6 +88,9 @@ def posterior(
 ) -> xr.DataTree:
     """Infer ε_n, its scatter, the shape and friction of a ball from the times of its impacts.
 
+    Errors of g and of the clock are one factor of all speeds: they are part of the errors of β and of a yield
+    speed, cancel in ε, a ratio of times, and change L/R and Ra by less than they are.
+
     A ball is released from rest at any angle; how it turns is not measured. Its times are compared with
     those of simulated balls with the same errors, through four numbers: the parameter of ε_n by least
     squares, and how large the residuals are early and late. Their joint density is estimated from simulations
@@ -133,9 +136,9 @@ def posterior(
         Prior of the friction of a `Coulomb` law: uniform between these, 0 <= low < high. Not inferred unless
         given.
     particles : int
-        Drops that are simulated at each point of the grid, >= 100. The sampling error of the likelihood adds
-        up over series: with ten and 500, ln of a factor between shape and roughness is off by 3, so that one
-        may seem decided that is not; ten need 2000.
+        Drops that are simulated at each point of the grid, >= 100. Sampling errors of the likelihood add up
+        over series; what they may do to a Bayes factor is stated, and no verdict rests on it. More particles
+        decide more.
     draws : int
         Draws of the posterior, >= 100.
     seed : int
@@ -152,12 +155,13 @@ def posterior(
         attributes hold the settings; ``explained_by``, what makes ε scatter: 'shape', 'roughness', 'surface'
         (one of these, and the times do not tell which), 'material', 'both' (surface and material), 'neither'
         (errors of the times suffice) or 'undecided' (surface or material); ``log_bayes_factor_surface``,
-        ``_shape``, ``_roughness`` and ``_scatter``, ln of the factors for each against its absence;
+        ``_shape``, ``_roughness`` and ``_scatter``, ln of the factors for each against its absence, with
+        ``log_bayes_factor_error``, their standard error of the finite number of simulated drops;
         ``elongation_determined`` (1 or 0), ``elongation_upper_limit`` (95 %, for L/R uniform from 0),
         ``roughness_upper_limit`` (m, likewise); ``predictive_p_value``, the probability that the best ball
         scatters ε as far from its usual as observed, or with as little growth towards low speeds, as large a
-        residual, or as much of a trend with the speed; and ``verdict``, a sentence, which says first if this
-        is small.
+        residual, or as much of a trend with the speed; ``verdict``, a sentence, which says first if this is
+        small, and ``answer``, the result in one line.
 
     Raises
     ------
@@ -349,6 +353,9 @@ def _tree(
         values |= {name: chain[..., 2 + place] for place, name in enumerate(names)}
         if scatters:
             values["scatter"] = np.exp(values["scatter"])
+        # All speeds, g Δt/2, are off by one factor; ε, a ratio of times, is not.
+        factor = np.random.default_rng([setting.seed, 1]).standard_normal(chain.shape[:-1]) * series[0].common
+        values[family.parameter] = values[family.parameter] * np.exp(family.power * factor)
         return values, log.reshape(_CHAINS, -1)
 
     shaped, log = drawn(found)
@@ -380,7 +387,8 @@ def _tree(
     )
     tree["likelihood"] = xr.DataTree(shape)
     verdict = judge(found, rough, smooth, scatters=scatters)
-    best = found if rough is None or found.best >= rough.best else rough
+    best = agreeing(found, rough)
+    disagrees = disagreement(best)
     tree.attrs |= {
         "title": "Posterior from the times of impacts",
         "source": f"restitution {version('restitution')}",
@@ -388,13 +396,21 @@ def _tree(
         "form": family.form,
         **setting.model_dump(exclude_none=True),
         "explained_by": verdict.cause,
+        "log_bayes_factor_error": verdict.error,
         "log_bayes_factor_surface": verdict.for_surface,
         "log_bayes_factor_shape": verdict.for_shape,
         **({"log_bayes_factor_scatter": verdict.for_scatter} if scatters else {}),
         "elongation_determined": int(verdict.surface == "shape" and verdict.cause in ("shape", "both")),
         "elongation_upper_limit": found.limit(1),
+        "answer": answer(
+            verdict,
+            shaped,
+            None if rough is None else asperities["roughness"],
+            0.25 * setting.diameter * found.limit(1),
+            disagrees,
+        ),
         "predictive_p_value": min(1.0, len(best.signs) * min(best.signs)),
-        "verdict": disagreement(best)
+        "verdict": disagrees
         + sentence(
             found,
             rough,

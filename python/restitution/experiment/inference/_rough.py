@@ -11,6 +11,7 @@ that a k stands for. Contacts of different impacts are independent.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -74,6 +75,6 @@ def over_heights(
     places = [np.clip(np.log(heights * one), *found.axes[1][[0, -1]]) for one in couplings]
     axes = (found.axes[0], np.log(heights), *found.axes[2:])
     if len(couplings) == 1:
-        return Table(axes, np.asarray(between(places[0])), found.signs, found.best)
+        return replace(found, axes=axes, values=np.asarray(between(places[0])))
     values = np.stack([between(place) for place in places], axis=-1)
-    return Table((*axes, np.array(frictions)), values, found.signs, found.best)
+    return replace(found, axes=(*axes, np.array(frictions)), values=values)

@@ -79,7 +79,8 @@ class Series:
     ----------
     drop : float
         Height of the fall before the first impact, in m.
-    gravity : float
+    gravity, common : float
+        g in m/s², and the error of g and of the clock, over the value, that all speeds have in common.
     errors : ndarray, shape (n,)
         Standard errors of the times.
     delay : ndarray, shape (n - 1,)
@@ -103,6 +104,7 @@ class Series:
 
     drop: float
     gravity: float
+    common: float
     errors: Array
     delay: Array
     known: npt.NDArray[np.intp]
@@ -169,6 +171,10 @@ class Series:
         one = cls(
             drop=drop,
             gravity=gravity,
+            common=math.hypot(
+                float(data.attrs.get("gravity_uncertainty", 0.0)) / gravity,
+                float(data.attrs.get("clock_uncertainty", 0.0)),
+            ),
             errors=errors,
             delay=contact * np.nan_to_num(delays(np.diff(time), gravity)),
             known=known,

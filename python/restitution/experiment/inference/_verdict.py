@@ -1,6 +1,7 @@
 """Decide from the times whether the scatter of ε is of the shape, of the material, of both, or none."""
 
 import math
+from collections.abc import Mapping
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -40,6 +41,7 @@ class Verdict(NamedTuple):
     for_scatter: float  # of the material
     for_roughness: float
     for_surface: float
+    error: float  # of these, of the finite number of simulated drops
 
 
 def judge(found: Table, rough: Table | None, smooth: Table, *, scatters: bool) -> Verdict:
@@ -48,7 +50,13 @@ def judge(found: Table, rough: Table | None, smooth: Table, *, scatters: bool) -
     Surface and material have half the prior probability each of being there; shape and asperities share that
     of the surface. Without them L/R is at the low end of its prior in the table `smooth`, and without scatter
     that of ε_n is.
+
+    The logarithm x of a factor has an error s, as of other simulated drops. Its odds averaged over the error
+    are those of x/√(1 + πs²/8), to a few per cent (MacKay, Neural Comput. 4, 720 (1992)), and these are to be
+    strong.
     """
+    error = math.sqrt(found.noise + (smooth if rough is None else rough).noise)
+    strong = math.log(_STRONG) * math.sqrt(1.0 + math.pi / 8.0 * error**2)
 
     def total(one: Table, *ends: int) -> tuple[float, float]:
         """Return ln of the evidence without and with a material that scatters."""
@@ -61,7 +69,6 @@ def judge(found: Table, rough: Table | None, smooth: Table, *, scatters: bool) -
     asperities = (-math.inf, -math.inf) if rough is None else total(rough)
     half = 0.0 if rough is None else math.log(0.5)
     surface = tuple(half + float(np.logaddexp(a, b)) for a, b in zip(shape, asperities, strict=True))
-    strong = math.log(_STRONG)
 
     def against(one: tuple[float, float], other: tuple[float, float]) -> float:
         """Compare a half of what surfaces there are with the rest: the other half, and none."""
@@ -72,8 +79,9 @@ def judge(found: Table, rough: Table | None, smooth: Table, *, scatters: bool) -
     for_shape, for_roughness = against(shape, asperities), against(asperities, shape)
     for_scatter = float(np.logaddexp(none[1], surface[1]) - np.logaddexp(none[0], surface[0]))
     which: Surface = "surface" if rough is not None else "shape"
-    if max(for_shape, for_roughness) > strong:
-        which = "shape" if for_shape > for_roughness else "roughness"
+    apart = float(np.logaddexp(*shape) - np.logaddexp(*asperities))
+    if abs(apart) > strong:
+        which = "shape" if apart > 0.0 else "roughness"
     cause: Cause
     match (for_surface > strong, for_scatter > strong):
         case (True, True):
@@ -85,7 +93,17 @@ def judge(found: Table, rough: Table | None, smooth: Table, *, scatters: bool) -
         case _:
             most = max(*shape, *asperities, none[1])
             cause = "undecided" if most - none[0] > strong else "neither"
-    return Verdict(cause, which, for_shape, for_scatter, for_roughness, for_surface)
+    return Verdict(cause, which, for_shape, for_scatter, for_roughness, for_surface, error)
+
+
+def agreeing(found: Table, rough: Table | None) -> Table:
+    """Return the likelihood of the kind of ball, with a shape or with asperities, that the times agree with.
+
+    If either gives the times, they disagree with no ball; but one that is far less probable is none.
+    """
+    kinds = [one for one in (found, rough) if one is not None]
+    best = max(one.best for one in kinds)
+    return max((one for one in kinds if best - one.best < math.log(_STRONG)), key=lambda one: min(one.signs))
 
 
 def disagreement(found: Table) -> str:
@@ -100,6 +118,39 @@ def disagreement(found: Table) -> str:
     share, words = min(wrong, key=lambda each: each[0])
     p = f"p = {share:.1g}" if share > 0.0 else f"p < {_DISAGREES / len(_SIGNS):.1g}"
     return f"{words} ({p} for the best ball of this kind); what follows holds only for such balls. "
+
+
+def answer(
+    verdict: Verdict, shaped: Mapping[str, Array], roughness: Array | None, most: float, disagrees: str
+) -> str:
+    """State the result in one line, with intervals of 90 %.
+
+    Given are draws of balls with a shape by name, those of Ra in m, the limit of the out-of-roundness, and
+    what disagrees.
+    """
+    if disagrees:
+        return disagrees.split(" (p ")[0]
+
+    def between(values: Array, unit: float = 1e-6) -> str:
+        low, high = np.quantile(values, (0.05, 0.95)) / unit
+        return f"{digits(low)} to {digits(high)}"
+
+    shape = f"out of round by {between(shaped['out_of_roundness'])} µm"
+    asperities = "" if roughness is None else f"rough with Ra = {between(roughness)} µm"
+    surfaces = {"shape": shape, "roughness": asperities, "surface": f"{shape}, or {asperities}"}
+    either = surfaces[verdict.surface]
+    steady = "scatter" not in shaped
+    material = "" if steady else f"ε_n scatters by {between(shaped['scatter'], 1.0)}"
+    match verdict.cause:
+        case "both":
+            return f"The ball is {either}, and its {material} (90 %)"
+        case "material":
+            return f"The material: {material} (90 %)"
+        case "neither":
+            return f"A sphere explains the times; out of round by less than {digits(1e6 * most)} µm (95 %)"
+        case "undecided":
+            return "Surface or material: the times do not tell which makes ε scatter"
+    return f"The ball is {either} (90 %)" + (", if ε_n does not scatter" if steady else "")
 
 
 def sentence(

@@ -177,6 +177,26 @@ class Series(Content):
         """Number of coefficients of restitution."""
         return int(np.isfinite(self.data.restitution).sum())
 
+    @property
+    def mean(self) -> flight.LawFit | None:
+        """The constant that fits, which is the mean coefficient."""
+        return next((fit for fit in self.fits if fit.law == "constant"), None)
+
+    @property
+    def answer(self) -> tuple[str, str] | None:
+        """The result: the mean ε with its error, and a line on where it holds and what makes ε scatter."""
+        if self.mean is None:
+            return None
+        speeds = self.data.impact_velocity.values[np.isfinite(self.data.restitution.values)]
+        line = f"The mean between {speeds.min():.2f} and {speeds.max():.2f} m/s"
+        if self.tables > 1 and self.mean.between_groups_error > 0.0:
+            differ = spread(self.mean.between_groups, self.mean.between_groups_error)
+            line += f". Tables differ by {differ}"
+        if self.shape is not None and self.shape.draws is not None:
+            line += f". {self.shape.draws.attrs['answer']}"
+        value = with_error(self.mean.parameters["restitution"], self.mean.errors["restitution"])
+        return f"ε = {value}", f"{line}."
+
     def sentence(self, setting: Setting) -> str:
         """State the result in a sentence, as a paper would."""
         checked(setting)
@@ -194,7 +214,8 @@ class Series(Content):
         if not known.any():
             return f"{begin}, no coefficient of restitution can be given."
         between = f"between {speeds.min():.2f} and {speeds.max():.2f} m/s"
-        if not self.fits:
+        mean = self.mean
+        if mean is None:
             values = ", ".join(
                 with_error(float(value), float(sigma))
                 for value, sigma in zip(
@@ -204,7 +225,6 @@ class Series(Content):
                 )
             )
             return f"{begin}, the coefficient of restitution is {values} {between}."
-        mean = next(fit for fit in self.fits if fit.law == "constant")
         best = self.fits[0]
         text = (
             f"{begin}, the mean coefficient of restitution {between} is "
@@ -230,6 +250,8 @@ class Series(Content):
         if gain >= _BETTER and setting.mass is not None:
             text += f". The law that fits best is {str(best).splitlines()[0]}"
             text += f", by {gain:.1f} in Akaike's criterion over a constant"
+            if self.shape is not None and self.shape.bends:
+                text += "; a surface that is not that of a sphere makes ε depend on the speed, too"
         elif gain >= _BETTER:
             text += (
                 ". It depends on the speed, as neglected drag alone would have it: give the mass of the ball"

@@ -63,45 +63,60 @@ def write(file: Path | Sequence[Path], out: Path, setting: Setting, *, replace: 
 
 
 def _page(analysis: Analysis) -> str:
-    setting, several = analysis.setting, len(analysis.recordings) > 1
-    sections = []
-    if analysis.together is not None:
-        words = f"{analysis.together.drops} drops together"
-        parts = _series(analysis.together, setting, analysis.series)
+    setting, together = analysis.setting, analysis.together
+    sections, details = [], []
+    if together is not None:
+        parts = _series(together, setting, analysis.series)
+        words = f"{together.drops} drops together"
         sections.append(Section("together", words, [*parts[:1], _drops(analysis), *parts[1:]]))
     for place, one in enumerate(analysis.recordings):
         title = "The recording" if heard_in(one.heard) else "The times"
-        title, key = (analysis.named(one), f"-{place}") if several else (title, "")
+        title, key = (analysis.named(one), f"-{place}") if len(analysis.recordings) > 1 else (title, "")
         parts = _recording(one, setting)
-        sections.append(Section(f"recording{key}", title, _folded("Sound and set-up", parts, several)))
-    for series in analysis.series:
-        alone = len(analysis.series) == 1
-        title = "Coefficient of restitution" if alone else f"Series {series.number}"
-        parts = _series(series, setting)
-        if analysis.together is not None:
-            parts = [paragraph(series.sentence(setting)), *_folded("Coefficients and laws", parts, True)]
-        sections.append(Section(f"series-{series.number}", title, parts))
+        if together is None:
+            details.append(Section(f"recording{key}", title, parts))
+            for series in one.series:
+                title = (
+                    "Coefficient of restitution" if len(analysis.series) == 1 else f"Series {series.number}"
+                )
+                details.append(Section(f"series-{series.number}", title, _series(series, setting)))
+            continue
+        pieces = []
+        for series in one.series:
+            words = f"Series {series.number}: coefficients and laws"
+            pieces += [paragraph(series.sentence(setting)), *_folded(words, _series(series, setting))]
+        details.append(Section(f"recording{key}", title, [*pieces, *_folded("Sound and set-up", parts)]))
     for shown in analysis.answers:
         if shown.shape is not None:
             of = f" (series {shown.number})" if len(analysis.answers) > 1 else ""
             sections.append(Section(f"shape-{shown.number}", f"Shape of the ball{of}", _shape(shown.shape)))
             sections.append(Section(f"budget-{shown.number}", f"Error budget{of}", _budget(shown.shape)))
+    sections = [*details, *sections] if together is None else [*sections, *details]
     sections.append(Section("impacts", "All impacts", [_impacts(analysis)]))
     warnings = "".join(f"<li>{text(warning)}</li>" for warning in analysis.warnings)
     careful = f"<ul>{warnings}</ul>" if warnings else ""
     lead = "".join(paragraph(sentence, "lead") for sentence in analysis.sentences)
     return page(
         f"{analysis.file}: impacts and coefficient of restitution",
-        f"<h1>{text(analysis.file)}</h1>\n{lead}\n{careful}",
+        f'<h1 class="of">{text(analysis.file)}</h1>\n{_answers(analysis)}{lead}\n{careful}',
         sections,
         f"Made by restitution {version('restitution')}.",
     )
 
 
-def _folded(summary: str, parts: list[str], fold: bool) -> list[str]:
+def _answers(analysis: Analysis) -> str:
+    """Put the numbers first, large, each with its line."""
+    found = []
+    for one in analysis.answers:
+        if one.answer is not None:
+            number, line = one.answer
+            begin = f"Series {one.number}: " if len(analysis.answers) > 1 else ""
+            found.append(paragraph(begin + number, "answer") + paragraph(line, "line"))
+    return "\n".join(found)
+
+
+def _folded(summary: str, parts: list[str]) -> list[str]:
     """Put details behind a line that opens them."""
-    if not fold:
-        return parts
     return [f"<details><summary>{text(summary)}</summary>", *parts, "</details>"]
 
 
@@ -110,12 +125,11 @@ def _drops(analysis: Analysis) -> str:
     rows = []
     for recording in analysis.recordings:
         for one in recording.series:
-            mean = next((fit for fit in one.fits if fit.law == "constant"), None)
-            cells = ["–", "–"]
+            mean, cells = one.mean, ["–", "–"]
             if mean is not None:
-                cells[0] = with_error(mean.parameters["restitution"], mean.errors["restitution"])
+                cells[0] = prose(with_error(mean.parameters["restitution"], mean.errors["restitution"]))
             if mean is not None and mean.scatter_error > 0.0:
-                cells[1] = spread(mean.scatter, mean.scatter_error)
+                cells[1] = prose(spread(mean.scatter, mean.scatter_error))
             rows.append([text(analysis.named(recording)), str(one.number), str(one.coefficients), *cells])
     caption = "The drops by themselves. The scatter is what errors of measurement do not explain."
     head = ["file", "series", "coefficients", "mean ε", "scatter of ε"]
@@ -169,11 +183,18 @@ def _series(one: Series, setting: Setting, drops: Sequence[Series] = ()) -> list
         best = one.fits[0].aic
         rows = []
         for fit in one.fits:
-            parameters = ", ".join(map(" ".join, fit.estimates()))
+            parameters = ", ".join(map(" = ".join, fit.estimates()))
             scatter = spread(fit.scatter, fit.scatter_error) if fit.scatter_error > 0.0 else "none fitted"
             chance = "" if fit.scatter_error > 0.0 else f"{fit.p_value:.2g}"
             quality = f"{fit.chi2:.1f}/{fit.degrees_of_freedom}"
-            cells = [text(fit.law), text(parameters), text(scatter), quality, chance, f"{fit.aic - best:.1f}"]
+            cells = [
+                text(fit.law),
+                prose(parameters),
+                prose(scatter),
+                quality,
+                chance,
+                f"{fit.aic - best:.1f}",
+            ]
             rows.append(cells)
         caption = "Laws, the best first. The scatter is what errors of measurement do not explain."
         head = ["law", "parameters", "scatter of ε", "χ²/n", "p", "ΔAIC"]
@@ -194,7 +215,7 @@ def _shape(found: Shape) -> list[str]:
     for name, values in drawn.data_vars.items():
         low, middle, high = np.quantile(values, (0.05, 0.5, 0.95))
         scale = 1e6 if name in ("out_of_roundness", "roughness") else 1.0
-        digits = 6 if scale == 1.0 and name != "elongation" else 3
+        digits = 6 if name in ("normal", "beta", "yield_speed") else 3
         words = _NAMES.get(str(name), str(name).replace("_", " "))
         rows.append([prose(words), *(f"{scale * x:.{digits}g}" for x in (middle, low, high))])
     parts += [
@@ -217,6 +238,7 @@ def _shape(found: Shape) -> list[str]:
 _NAMES = {
     "normal": "ε_n",
     "elongation": "L/R",
+    "scatter": "scatter of ε_n",
     "out_of_roundness": "out-of-roundness (µm)",
     "roughness": "or, of a round ball, Ra (µm)",
 }

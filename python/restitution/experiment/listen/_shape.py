@@ -52,6 +52,11 @@ class Shape(Content):
     assumed: str
     disagreement: str = ""
 
+    @property
+    def bends(self) -> bool:
+        """Tell that the surface of the ball may be why ε depends on the speed."""
+        return self.draws is not None and self.draws.attrs["explained_by"] not in ("neither", "material")
+
 
 def shape(
     drops: list[xr.Dataset],
