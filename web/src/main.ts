@@ -1,6 +1,7 @@
 /** The page comes to life: what people do, and what it does to the explorer. */
 
 import "./language"; // before the charts, which look at it as they load
+import { answer } from "./class";
 import { changed, Controls } from "./controls";
 import { Engine } from "./engine/module";
 import { Pool } from "./engine/pool";
@@ -301,6 +302,9 @@ function begin(pool: Pool): void {
   film.hidden = !canRecord() || !explorer.player.stage;
   onClick("record", () => void shoot(explorer, film));
   onClick("save-page", () => save("explorer.html", SELF, "text/html"));
+  part("results").addEventListener("input", () => {
+    part("class-answer").textContent = answer(part<HTMLTextAreaElement>("results").value);
+  });
   onClick("licences", () => {
     const text = part("licence-text");
     text.hidden = !text.hidden;

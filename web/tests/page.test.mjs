@@ -567,6 +567,24 @@ test("the replay of an impact is recorded as a film", async () => {
   await close();
 });
 
+test("results of a class give one number, its error, and what differs between tables", async () => {
+  const { page, close } = await open(`${SMALL}`);
+  // Of n tables whose values differ far more than their errors the mean has the error s/√n, with the usual s.
+  const values = [0.9301, 0.9279, 0.9325, 0.931, 0.9288, 0.9262];
+  const mean = values.reduce((a, b) => a + b) / 6;
+  const spread = Math.sqrt(values.reduce((sum, x) => sum + (x - mean) ** 2, 0) / 5);
+  await page.locator("#results").fill(values.map((x, k) => `table ${k + 1}: ${x} ± 0.00001`).join("\n"));
+  const said = await page.locator("#class-answer").textContent();
+  const [, value, error, between] = said.match(/^ε = (\S+) ± (\S+) from 6 tables, which differ by (\S+)\.$/);
+  assert.ok(Math.abs(value - mean) < 1e-5 && Math.abs(error / (spread / Math.sqrt(6)) - 1) < 0.05 && Math.abs(between / spread - 1) < 0.05, said);
+  await page.locator("#results").fill("a 0,930 0,001\nb 0,931 0,001\n\nb 0,9312 0,001\nnothing");
+  assert.equal(
+    await page.locator("#class-answer").textContent(),
+    "ε = 0.93073 ± 0.00058 from 2 tables, which differ by no more than their errors; drops at one table by no more than their errors. Not read: line 5; each needs ε and an error > 0.",
+  );
+  await close();
+});
+
 test("the page saves itself, and what is saved is the page", async () => {
   const { page, close } = await open(SMALL);
   await set(page, "separation", 0.3);
