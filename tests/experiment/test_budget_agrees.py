@@ -10,6 +10,7 @@ import pytest
 import restitution as rs
 from restitution._internal.parameters import ParameterError, Problem
 from restitution.experiment.listen import Setting, analyse, write
+from restitution.experiment.listen._agreement import compared
 
 DIAMETER, DROP = 6e-3, 0.1
 
@@ -77,6 +78,10 @@ def test_a_budget_of_a_ball_that_is_rounder_is_contradicted(tmp_path: Path) -> N
     constant = next(fit for fit in series.fits if fit.law == "constant")
     assert by_times == pytest.approx(constant.errors["restitution"], rel=0.06)
     assert by_budget > 5.0 * by_times
+    assert series.shape is not None
+    assert series.shape.budget is not None
+    inferred = compared(series.data, series.fits, series.shape.budget, 0.0, measured=False)
+    assert not any(one.disagree for one in inferred)  # with its error it contradicts nothing
     page = out.read_text(encoding="utf-8")
     assert page.index("the mean coefficient of restitution") < page.index("budget and the times disagree")
 

@@ -23,7 +23,10 @@ from restitution.laws import Frictionless, Plastic, Viscoelastic
 
 _PARTICLES = 300
 _APART = 5e-3
-"""Difference in ε by which the law of a ball may be off the best law: the shape, too, bends ε(v)."""
+"""Difference in ε by which a law may be off the best one; or twice the scatter of ε, if that is more.
+
+A surface that makes ε scatter bends ε(v) by as much.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +83,7 @@ def shape(
         None,
         "A power law fits far better than the law of any ball; no shape is inferred from that.",
     )
-    if apart <= _APART:
+    if apart <= max(_APART, 2.0 * fits[0].scatter):
         try:
             draws = posterior(
                 drops if len(drops) > 1 else data,
@@ -124,7 +127,7 @@ def shape(
         return Shape(law, draws, verdict, None, f"No budget of errors: {error}.")
     if len(drops) > 1:  # whose mean the budget of one drop is not about
         return Shape(law, draws, verdict, budget, assumed)
-    numbers = list(compared(data, fits, budget, _material(draws)))
+    numbers = list(compared(data, fits, budget, _material(draws), measured=out_of_roundness is not None))
     return Shape(law, draws, verdict, budget, assumed, disagreement(numbers))
 
 
