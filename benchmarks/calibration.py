@@ -48,7 +48,7 @@ class Calibration:
     truth, rank : ndarray, shape (experiments, 3)
         Of ε_n, L/R and the scatter of ε_n.
     told : ndarray of bool, shape (experiments,)
-        Whether the verdict was that the times determine the shape.
+        Whether the verdict was that the surface is not that of a sphere.
     limit : ndarray, shape (experiments,)
         The upper limit of L/R.
     """
@@ -109,7 +109,7 @@ def calibrate(
         truths.append(truth)
         drawn = [found["posterior"].to_dataset()[name].values.ravel() for name in NAMES]
         ranks.append([float(np.mean(one < true)) for one, true in zip(drawn, truth, strict=True)])
-        told.append(bool(found.attrs["elongation_determined"]))
+        told.append(found.attrs["explained_by"] in ("shape", "roughness", "surface", "both"))
         limits.append(float(found.attrs["elongation_upper_limit"]))
     return Calibration(np.array(truths), np.array(ranks), np.array(told), np.array(limits))
 
@@ -153,9 +153,9 @@ def sentence(found: Calibration) -> str:
     small = found.truth[:, 1] < 0.008
     below = found.truth[:, 1] < found.limit
     return (
-        f"{len(found.rank)} experiments. The shape was determined in {100 * found.told.mean():.0f} % of "
+        f"{len(found.rank)} experiments. A surface that is not that of a sphere was found in {100 * found.told.mean():.0f} % of "
         f"all, in {100 * found.told[small].mean():.0f} % where $L/R < 0.008$, and in "
-        f"{100 * found.told[~small].mean():.0f} % above. Where it was not determined, $L/R$ was below the "
+        f"{100 * found.told[~small].mean():.0f} % above. Where none was found, $L/R$ was below the "
         f"upper limit in {100 * below[~found.told].mean():.0f} %.\n"
     )
 
@@ -176,9 +176,9 @@ def draw(found: Calibration, *, style: Style | None = None) -> Figure:
 
 
 def frictions(experiments: int) -> None:
-    """Print how often intervals of 90 % and limits of L/R hold, and how often a shape is claimed wrongly."""
+    """Print how often intervals of 90 % and limits of L/R hold, and how often a surface is claimed wrongly."""
     print(
-        "| law of the ball | $\\varepsilon_n$ held | L/R held | below its limit | a shape, if L/R < 0.008 |"
+        "| law of the ball | $\\varepsilon_n$ held | L/R held | below its limit | a surface, if L/R < 0.008 |"
     )
     print("|---|---|---|---|---|")
     for name, kind in LAWS.items():
