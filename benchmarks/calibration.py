@@ -153,8 +153,8 @@ def sentence(found: Calibration) -> str:
     small = found.truth[:, 1] < 0.008
     below = found.truth[:, 1] < found.limit
     return (
-        f"{len(found.rank)} experiments. A surface that is not that of a sphere was found in {100 * found.told.mean():.0f} % of "
-        f"all, in {100 * found.told[small].mean():.0f} % where $L/R < 0.008$, and in "
+        f"{len(found.rank)} experiments. A surface that is not that of a sphere was found in "
+        f"{100 * found.told.mean():.0f} % of all, in {100 * found.told[small].mean():.0f} % where $L/R < 0.008$, and in "
         f"{100 * found.told[~small].mean():.0f} % above. Where none was found, $L/R$ was below the "
         f"upper limit in {100 * below[~found.told].mean():.0f} %.\n"
     )
@@ -176,7 +176,7 @@ def draw(found: Calibration, *, style: Style | None = None) -> Figure:
 
 
 def frictions(experiments: int) -> None:
-    """Print how often intervals of 90 % and limits of L/R hold, and how often a surface is claimed wrongly."""
+    """Print how often intervals of 90 % and limits of L/R hold, and how often a surface is found wrongly."""
     print(
         "| law of the ball | $\\varepsilon_n$ held | L/R held | below its limit | a surface, if L/R < 0.008 |"
     )
