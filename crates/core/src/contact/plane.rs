@@ -23,11 +23,10 @@
 //! the resolution. An overlap at the end of a step is rounding: one that approaches is a contact now, one that separates is none.
 
 use super::certify::{SHORTEST, TOUCHING};
-use crate::math::Vector;
 use crate::motion::SpinBounds;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
-use crate::shape::{ConvexSurface, Least, NormalMotion, Point, Pruning, RigidSurface};
+use crate::shape::{BallTree, Least, NormalMotion, Point, Pruning, RigidSurface, each_surface};
 
 /// Far from the contact nodes of the tree are not looked into where they allow a step of this part of the length that is found.
 const ENOUGH: f64 = 0.7;
@@ -145,66 +144,14 @@ impl RigidSurface {
         near: Option<(usize, f64)>,
         most: f64,
     ) -> Step {
-        match self {
-            Self::Points(balls) => {
-                let opening = |part: usize, point: &Point| match departure {
-                    Some(left) if left.part == part => (0.0, left.speed),
-                    _ => point.opening(at),
-                };
-                let bound = |reach: f64| turn.whole * reach - at.acceleration;
-                // The parabola of the least gap, the least rate and the largest M of a node lies below those of all its balls.
-                let exceeds = |least: &Least, limit: f64| {
-                    let below = limit * (least.rate - 0.5 * limit * bound(least.reach));
-                    least.gap.max(0.0) + below > 0.0
-                };
-                let cost = |part: usize, point: &Point, limit: f64| {
-                    let (width, rate) = opening(part, point);
-                    let (width, bound) = (width.max(0.0), bound(f64::from(point.reach)));
-                    if width + limit * (rate - 0.5 * limit * bound) > 0.0 {
-                        f64::INFINITY
-                    } else {
-                        first_root(width, rate, bound)
-                    }
-                };
-                let found = |part: usize, root: f64, only_until: f64| {
-                    let point = &balls.points()[part];
-                    let (width, rate) = opening(part, point);
-                    Step {
-                        length: root.min(only_until),
-                        part,
-                        width,
-                        rate,
-                        closes: root <= only_until && rate < 0.0,
-                        bound: bound(f64::from(point.reach)),
-                        only_until,
-                    }
-                };
-                if let Some((part, only_until)) = near {
-                    #[cfg(test)]
-                    evaluations::add(Evaluation::Gap);
-                    let root = cost(part, &balls.points()[part], f64::INFINITY);
-                    if root < only_until {
-                        return found(part, root, only_until);
-                    }
-                }
-                let effort = Pruning {
-                    most,
-                    enough: ENOUGH,
-                    short: SHORT * at.rate.abs() / bound(1.0),
-                };
-                let first = balls.cheapest(at, near.map(|near| near.0), effort, exceeds, cost);
-                found(first.place, first.cost, first.others)
-            }
-            Self::Convex(convex) => convex.step(at, turn, departure, most),
-        }
+        each_surface!(self, balls => balls.step(at, turn, departure, near, most), convex => {
+            convex.step(at, turn, departure, most)
+        })
     }
 
     /// False where f″ and the bound backward take longer than the steps that they save.
     pub(crate) fn looks_back(&self) -> bool {
-        match self {
-            Self::Points(_) => true,
-            Self::Convex(convex) => !matches!(convex.surface, ConvexSurface::Superellipsoid(_)),
-        }
+        each_surface!(self, _balls => true, convex => convex.looks_back())
     }
 
     /// When in the time `since` before this one a part can have touched.
@@ -216,82 +163,121 @@ impl RigidSurface {
         turn: &SpinBounds,
         since: f64,
     ) -> BackwardBound {
-        match self {
-            Self::Points(balls) => {
-                #[cfg(test)]
-                evaluations::add(Evaluation::Gap);
-                let point = &balls.points()[part];
-                let (width, rate) = point.opening(at);
-                let bound = turn.whole * f64::from(point.reach) - at.acceleration;
-                let before = width - since * (rate + 0.5 * bound * since);
-                let gap = GapExpansion {
-                    width,
-                    rate,
-                    acceleration: point.acceleration(at),
-                };
-                BackwardBound::new(gap, before, since)
-            }
-            Self::Convex(convex) => convex.past(part, at, turn, since),
-        }
-    }
-
-    /// The point of a part that is nearest to the plane, from the centre of mass, in the axes of the body; of several the one that
-    /// comes down first, while **n** changes with **n**′.
-    #[inline(always)]
-    pub(crate) fn nearest(&self, part: usize, up: Vector, turning: Vector) -> Vector {
-        match self {
-            Self::Points(balls) => {
-                let point = &balls.points()[part];
-                point.place - up * point.radius
-            }
-            Self::Convex(convex) => convex.nearest(part, up, turning),
-        }
+        each_surface!(self, surface => surface.past(part, at, turn, since))
     }
 
     /// f″ of a part.
     #[inline(always)]
     pub(crate) fn acceleration(&self, part: usize, at: &NormalMotion) -> f64 {
-        match self {
-            Self::Points(balls) => balls.points()[part].acceleration(at),
-            Self::Convex(convex) => convex.acceleration(part, at),
-        }
+        each_surface!(self, balls => balls.points()[part].acceleration(at), convex => {
+            convex.acceleration(part, at)
+        })
     }
 
     /// True if some part but one overlaps, or touches within rounding, and approaches faster than that one.
     pub(crate) fn another_touches(&self, departure: Departure, at: &NormalMotion) -> bool {
-        match self {
-            Self::Points(balls) => {
-                let still = balls.points()[departure.part].opening(at).1;
-                let exceeds =
-                    |least: &Least, limit: f64| least.gap > TOUCHING || least.rate > limit;
-                let cost = |part: usize, point: &Point, _: f64| {
-                    let (gap, rate) = point.opening(at);
-                    if part != departure.part && gap <= TOUCHING {
-                        rate
-                    } else {
-                        f64::INFINITY
-                    }
-                };
-                balls.cheapest(at, None, Pruning::EXACT, exceeds, cost).cost < still
+        each_surface!(self, surface => surface.another_touches(departure, at))
+    }
+}
+
+impl BallTree {
+    /// As [`RigidSurface`]'s.
+    #[inline(always)]
+    fn step(
+        &self,
+        at: &NormalMotion,
+        turn: &SpinBounds,
+        departure: Option<Departure>,
+        near: Option<(usize, f64)>,
+        most: f64,
+    ) -> Step {
+        let opening = |part: usize, point: &Point| match departure {
+            Some(left) if left.part == part => (0.0, left.speed),
+            _ => point.opening(at),
+        };
+        let bound = |reach: f64| turn.whole * reach - at.acceleration;
+        // The parabola of the least gap, the least rate and the largest M of a node lies below those of all its self.
+        let exceeds = |least: &Least, limit: f64| {
+            let below = limit * (least.rate - 0.5 * limit * bound(least.reach));
+            least.gap.max(0.0) + below > 0.0
+        };
+        let cost = |part: usize, point: &Point, limit: f64| {
+            let (width, rate) = opening(part, point);
+            let (width, bound) = (width.max(0.0), bound(f64::from(point.reach)));
+            if width + limit * (rate - 0.5 * limit * bound) > 0.0 {
+                f64::INFINITY
+            } else {
+                first_root(width, rate, bound)
             }
-            Self::Convex(convex) => convex.another_touches(departure, at),
+        };
+        let found = |part: usize, root: f64, only_until: f64| {
+            let point = &self.points()[part];
+            let (width, rate) = opening(part, point);
+            Step {
+                length: root.min(only_until),
+                part,
+                width,
+                rate,
+                closes: root <= only_until && rate < 0.0,
+                bound: bound(f64::from(point.reach)),
+                only_until,
+            }
+        };
+        if let Some((part, only_until)) = near {
+            #[cfg(test)]
+            evaluations::add(Evaluation::Gap);
+            let root = cost(part, &self.points()[part], f64::INFINITY);
+            if root < only_until {
+                return found(part, root, only_until);
+            }
         }
+        let effort = Pruning {
+            most,
+            enough: ENOUGH,
+            short: SHORT * at.rate.abs() / bound(1.0),
+        };
+        let first = self.cheapest(at, near.map(|near| near.0), effort, exceeds, cost);
+        found(first.place, first.cost, first.others)
     }
 
-    /// The number of a part among those that the body was given.
-    pub(crate) fn number(&self, part: usize) -> usize {
-        match self {
-            Self::Points(balls) => balls.points()[part].number as usize,
-            Self::Convex(_) => part,
-        }
+    /// As [`RigidSurface`]'s.
+    #[inline(always)]
+    fn past(&self, part: usize, at: &NormalMotion, turn: &SpinBounds, since: f64) -> BackwardBound {
+        #[cfg(test)]
+        evaluations::add(Evaluation::Gap);
+        let point = &self.points()[part];
+        let (width, rate) = point.opening(at);
+        let bound = turn.whole * f64::from(point.reach) - at.acceleration;
+        let before = width - since * (rate + 0.5 * bound * since);
+        let gap = GapExpansion {
+            width,
+            rate,
+            acceleration: point.acceleration(at),
+        };
+        BackwardBound::new(gap, before, since)
+    }
+
+    /// As [`RigidSurface`]'s.
+    fn another_touches(&self, departure: Departure, at: &NormalMotion) -> bool {
+        let still = self.points()[departure.part].opening(at).1;
+        let exceeds = |least: &Least, limit: f64| least.gap > TOUCHING || least.rate > limit;
+        let cost = |part: usize, point: &Point, _: f64| {
+            let (gap, rate) = point.opening(at);
+            if part != departure.part && gap <= TOUCHING {
+                rate
+            } else {
+                f64::INFINITY
+            }
+        };
+        self.cheapest(at, None, Pruning::EXACT, exceeds, cost).cost < still
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Vector;
     use crate::random::pair;
-    use crate::shape::BallTree;
 
     fn vector(seed: u64, index: u64) -> Vector {
         let ((x, y), (z, _)) = (pair(seed, 2 * index), pair(seed, 2 * index + 1));
@@ -325,8 +311,8 @@ mod tests {
         let (mut exact, mut alone) = (0, 0);
         for count in [1, 2, 8, 9, 16, 17, 100, 1000, 5000] {
             for seed in 0..40 {
-                let skin = RigidSurface::Points(balls(seed, count));
-                let RigidSurface::Points(balls) = &skin else {
+                let skin = RigidSurface::Balls(balls(seed, count));
+                let RigidSurface::Balls(balls) = &skin else {
                     unreachable!()
                 };
                 let up = vector(seed, 1_000_000);

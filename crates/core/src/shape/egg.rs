@@ -1,7 +1,8 @@
 //! Eggs: two spherical caps, joined by an arc that is tangent to both.
 
-use super::revolved::{Place, ProfileArc, norm};
+use super::revolved::ProfileArc;
 use super::rigid::{CENTRE, Rigid, TENSOR};
+use super::surface::{Place, norm};
 use super::{BodyKind, Form};
 use crate::Error;
 use crate::describe::{Arguments, Kind, Parameter};

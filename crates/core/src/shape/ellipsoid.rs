@@ -1,7 +1,7 @@
 //! Ellipsoids.
 
-use super::convex::{Convex, ConvexSurface};
-use super::rigid::{CENTRE, Inertia, Rigid, RigidSurface, TENSOR};
+use super::rigid::{CENTRE, Inertia, Rigid, TENSOR};
+use super::surface::{Convex, EllipsoidSurface};
 use super::{BodyKind, Form, check_density};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
@@ -54,10 +54,8 @@ impl Rigid {
             ]),
         };
         let unit = a.max(b).max(c);
-        let surface = ConvexSurface::Ellipsoid(semi_axes.map(|axis| axis / unit));
-        Self::new(inertia, unit, |_| {
-            Ok(RigidSurface::Convex(Convex::new(surface)))
-        })
+        let surface = EllipsoidSurface(semi_axes.map(|axis| axis / unit));
+        Self::new(inertia, unit, |_| Ok(Convex::new(surface).into()))
     }
 
     /// Refuses semi-axes that are no positive numbers, or differ by more than 1000 times.

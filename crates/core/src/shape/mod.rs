@@ -1,7 +1,6 @@
 //! Bodies: mass, inertia, and the surface that can touch.
 
 mod clump;
-mod convex;
 mod cuboid;
 mod cylinder;
 mod die;
@@ -18,6 +17,7 @@ mod rigid;
 mod ring;
 mod rough;
 mod superellipsoid;
+mod surface;
 mod top;
 mod tree;
 mod truncated_cone;
@@ -30,19 +30,19 @@ use crate::math::Vector;
 pub use clump::Matter;
 pub use hull::triangles as convex_hull;
 
-pub(crate) use convex::{Convex, ConvexSurface};
 pub(crate) use pieces::{Feature, Piece, PieceKind};
 pub use revolution::*;
-pub(crate) use revolved::Band;
+pub(crate) use rigid::up;
 pub use rigid::{Inertia, Rigid, RigidBall};
-pub(crate) use rigid::{RigidSurface, up};
 pub use rough::{Heights, Roughness};
-pub(crate) use superellipsoid::Superellipsoid;
+pub(crate) use surface::{
+    Convex, ConvexSurface, NormalMotion, RigidSurface, Support, each_surface,
+};
 pub(crate) use top::Symmetry;
 pub use top::Top;
 #[cfg(test)]
-pub(crate) use tree::{BallTree, evaluations};
-pub(crate) use tree::{Least, NormalMotion, Point, Pruning};
+pub(crate) use tree::evaluations;
+pub(crate) use tree::{BallTree, Least, Point, Pruning};
 
 /// An entry of the table of bodies.
 #[derive(Debug)]
@@ -185,6 +185,21 @@ impl AnyBody<'_> {
                 allowed: "a body of revolution".into(),
             }),
         }
+    }
+
+    /// The parts with which it touches another body; `name` is for the error.
+    pub(crate) fn pieces(&self, name: &'static str) -> Result<Vec<Piece>, Error> {
+        let found = match self {
+            Self::Revolution(solid) => solid.pieces(),
+            Self::Rigid(body) => body.pieces(),
+        };
+        found.ok_or_else(|| Error::Parameter {
+            name,
+            value: crate::Value::Name("this body".into()),
+            allowed: "made of balls, an ellipsoid, a convex polyhedron, a cylinder or a spherocylinder: \
+                      the surface of another is not known where it is not on its convex hull, or not yet followed"
+                .into(),
+        })
     }
 }
 

@@ -3,11 +3,7 @@
 //! Each is convex, and the Minkowski sum of a polyhedron (a point, a segment, or one with faces) and of an ellipsoid whose support function is
 //! √(**u**·B**u**): a ball has B = ρ²I, a disc, which makes a cylinder of a segment, B = ρ²(I − **aa**), and a polyhedron by itself B = 0.
 
-use super::convex::Convex;
-use super::revolution::Ball;
-use super::{AnyBody, ConvexSurface, Rigid, RigidSurface, Solid, convex_hull};
-use crate::Error;
-use crate::Value;
+use super::hull::triangles;
 use crate::math::{Quaternion, Symmetric, UNITS, Vector};
 
 /// A part of a body, in m and the principal axes, from the centre of mass.
@@ -84,7 +80,7 @@ impl Piece {
         }
     }
 
-    fn ball(centre: Vector, radius: f64) -> Self {
+    pub(super) fn ball(centre: Vector, radius: f64) -> Self {
         let square = radius * radius;
         Self {
             kind: PieceKind::Ball(centre, radius),
@@ -123,8 +119,14 @@ impl Piece {
         }
     }
 
+    /// An ellipsoid whose axes and centre are these in those of the body.
+    pub(super) fn ellipsoid(semi_axes: [f64; 3], axes: Quaternion, centre: Vector) -> Self {
+        let round = Symmetric::turned(semi_axes.map(|axis| axis * axis), axes);
+        Self::convex(vec![centre], vec![Feature::new(centre, &[])], round)
+    }
+
     /// A segment rounded by a ball, or by a disc across it, whose flat sides are faces.
-    fn rod(ends: [Vector; 2], radius: f64, flat: bool) -> Self {
+    pub(super) fn rod(ends: [Vector; 2], radius: f64, flat: bool) -> Self {
         let along = ends[1] - ends[0];
         let axis = along / along.norm();
         let mut features = vec![Feature::new(ends[0], &[along])];
@@ -141,8 +143,8 @@ impl Piece {
         Self::convex(ends.to_vec(), features, round)
     }
 
-    fn polyhedron(corners: Vec<Vector>) -> Option<Self> {
-        let triangles = convex_hull(&corners)?;
+    pub(super) fn polyhedron(corners: Vec<Vector>) -> Option<Self> {
+        let triangles = triangles(&corners)?;
         let mut features: Vec<Feature> = corners.iter().map(|&at| Feature::new(at, &[])).collect();
         let mut edges: Vec<([usize; 2], Vector)> = Vec::new();
         for triangle in triangles {
@@ -231,90 +233,4 @@ impl Piece {
 /// A principal axis and the next two.
 fn around(axis: usize) -> [Vector; 3] {
     [0, 1, 2].map(|i| UNITS[(axis + i) % 3])
-}
-
-impl AnyBody<'_> {
-    /// The parts with which it touches another body; `name` is for the error.
-    pub(crate) fn pieces(&self, name: &'static str) -> Result<Vec<Piece>, Error> {
-        let found = match self {
-            Self::Revolution(solid) => of_solid(solid),
-            Self::Rigid(body) => of_rigid(body),
-        };
-        found.ok_or_else(|| Error::Parameter {
-            name,
-            value: Value::Name("this body".into()),
-            allowed: "made of balls, an ellipsoid, a convex polyhedron, a cylinder or a spherocylinder: \
-                      the surface of another is not known where it is not on its convex hull, or not yet followed"
-                .into(),
-        })
-    }
-}
-
-fn of_solid(solid: &Solid) -> Option<Vec<Piece>> {
-    let Some(balls) = solid.scaled.hull.balls() else {
-        let [across, along] = solid.scaled.hull.semi_axes()?.map(|axis| axis * solid.unit);
-        return Some(vec![ellipsoid(
-            [across, across, along],
-            Quaternion::IDENTITY,
-            Vector::default(),
-        )]);
-    };
-    let place = |ball: &Ball| Vector::new(0.0, 0.0, solid.unit * ball.offset);
-    if let (true, [one, two]) = (solid.is_filled, &balls[..])
-        && one.offset != two.offset
-    {
-        let ends = [place(two), place(one)];
-        return Some(vec![Piece::rod(ends, solid.unit * one.radius, false)]);
-    }
-    let piece = |ball: &Ball| Piece::ball(place(ball), solid.unit * ball.radius);
-    let count = if solid.is_filled { 1 } else { balls.len() };
-    Some(balls[..count].iter().map(piece).collect())
-}
-
-/// An ellipsoid whose axes and centre are these in those of the body.
-fn ellipsoid(semi_axes: [f64; 3], axes: Quaternion, centre: Vector) -> Piece {
-    let round = Symmetric::turned(semi_axes.map(|axis| axis * axis), axes);
-    Piece::convex(vec![centre], vec![Feature::new(centre, &[])], round)
-}
-
-fn of_rigid(body: &Rigid) -> Option<Vec<Piece>> {
-    let unit = body.unit;
-    match (&body.skin, body.extent) {
-        (RigidSurface::Points(balls), Extent::Balls) => {
-            let piece = |point: &super::Point| Piece::ball(point.place * unit, point.radius * unit);
-            Some(balls.points().iter().map(piece).collect())
-        }
-        (RigidSurface::Points(points), Extent::Hull) => {
-            let corners = points.points().iter().map(|point| point.place * unit);
-            Some(vec![Piece::polyhedron(corners.collect())?])
-        }
-        (RigidSurface::Convex(Convex { surface, frame, .. }), Extent::Hull) => {
-            let (axes, centre) = match frame {
-                Some(frame) => (frame.axes.inverse(), frame.place(Vector::default())),
-                None => (Quaternion::IDENTITY, Vector::default()),
-            };
-            match surface {
-                ConvexSurface::Ellipsoid(semi_axes) => Some(vec![ellipsoid(
-                    semi_axes.map(|axis| axis * unit),
-                    axes,
-                    centre * unit,
-                )]),
-                ConvexSurface::Bands(bands) => match &bands[..] {
-                    // A cylinder.
-                    [one, two]
-                        if one.radius == 0.0
-                            && two.radius == 0.0
-                            && one.centre[1] == two.centre[1] =>
-                    {
-                        let end = |z: f64| (centre + axes.rotate(Vector::new(0.0, 0.0, z))) * unit;
-                        let ends = [two, one].map(|band| end(band.centre[0]));
-                        Some(vec![Piece::rod(ends, one.centre[1] * unit, true)])
-                    }
-                    _ => None,
-                },
-                ConvexSurface::Superellipsoid(_) => None,
-            }
-        }
-        _ => None,
-    }
 }

@@ -1,8 +1,8 @@
 //! Solids of revolution with any profile.
 
-use super::convex::{Convex, ConvexSurface};
 use super::pieces::Extent;
-use super::rigid::{CENTRE, Inertia, Rigid, RigidSurface, TENSOR};
+use super::rigid::{CENTRE, Inertia, Rigid, TENSOR};
+use super::surface::{Band, Bands, Convex, Place, RigidSurface};
 use super::{BodyKind, Form, check_density};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
@@ -56,102 +56,6 @@ fn check_outline(profile: &[Place]) -> Result<(), Error> {
     Ok(())
 }
 
-/// A point (z, r) of a half-plane through the axis.
-pub(super) type Place = [f64; 2];
-
-/// The surface that an arc of the profile makes as it turns about the axis, in units of R from the centre of mass: a band of a torus, the rim
-/// of an edge or face where its radius is 0, a cap where its centre is on the axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Band {
-    /// The centre of the arc; its r is negative where the arc is wider than the body.
-    pub centre: Place,
-    pub radius: f64,
-    /// Unit vectors from the centre to the ends of the arc, that nearer to the pole at +z first.
-    pub ends: [Place; 2],
-    /// The largest distance of a point of it from the centre of mass.
-    pub reach: f64,
-}
-
-/// The length of a vector with these components. That of the platform's library has another last bit on another platform.
-pub(super) fn norm(a: f64, b: f64) -> f64 {
-    (a * a + b * b).sqrt()
-}
-
-/// Of what the support of a band is the sum, for a direction **u**: of z u_z, r |u_⊥| and ϱ|**u**|.
-pub(crate) type Weights = [f64; 3];
-
-impl Band {
-    fn new(centre: Place, radius: f64, ends: [Place; 2]) -> Self {
-        let mut band = Self {
-            centre,
-            radius,
-            ends,
-            reach: 0.0,
-        };
-        let [z, r] = centre;
-        let distance = norm(z, r);
-        // The farthest point of the arc is on the line through the centre of mass and its centre, or an end.
-        band.reach = if distance > 0.0 {
-            let [a, b, c] = band.weights(z / distance, r / distance);
-            (a * z + b * r) / distance + c
-        } else {
-            radius
-        };
-        for [a, b] in ends {
-            band.reach = band.reach.max(norm(z + radius * a, r + radius * b));
-        }
-        band
-    }
-
-    /// The same in units of `part` of the present one, in a body whose centre of mass is this far from the present one.
-    pub fn scaled(self, part: f64, shift: f64) -> Self {
-        Self {
-            centre: self.centre.map(|x| x / part),
-            radius: self.radius / part,
-            ends: self.ends,
-            reach: (self.reach + shift) / part,
-        }
-    }
-
-    /// The weights of the support in a direction (u_z, |u_⊥|): those of the whole torus where the arc has that normal, else those of the
-    /// rim at the nearer end.
-    #[inline]
-    pub fn weights(&self, along: f64, across: f64) -> Weights {
-        let [z, r] = self.centre;
-        if self.radius == 0.0 {
-            return [z, r, 0.0];
-        }
-        let beyond = |[a, b]: Place| along * b - across * a;
-        let end = match self.ends.map(beyond) {
-            [first, _] if first > 0.0 => self.ends[0],
-            [_, last] if last < 0.0 => self.ends[1],
-            _ => return [z, r, self.radius],
-        };
-        [z + self.radius * end[0], r + self.radius * end[1], 0.0]
-    }
-
-    /// h = max **u**·**x** over its points, for a unit vector **u**.
-    pub fn support(&self, u: Vector) -> f64 {
-        let across = u.horizontal();
-        let [a, b, c] = self.weights(u.z, across);
-        a * u.z + b * across + c
-    }
-
-    /// The point that lies farthest in the direction of a unit vector **u**; along the axis, where all of a rim does, the one towards
-    /// `tie`, or the centre of the rim.
-    pub fn farthest(&self, u: Vector, tie: Vector) -> Vector {
-        let across = u.horizontal();
-        let [a, b, c] = self.weights(u.z, across);
-        let (side, size) = if across > 0.0 {
-            (u, across)
-        } else {
-            (tie, tie.horizontal().max(f64::MIN_POSITIVE))
-        };
-        let out = b / size;
-        Vector::new(out * side.x, out * side.y, a) + u * c
-    }
-}
-
 /// An arc of an outline, in m: its centre, its radius, and the directions from its centre to its beginning and its end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ProfileArc {
@@ -199,24 +103,16 @@ impl Rigid {
 
     /// Returns the rims of a solid of revolution that can touch, (z, r) in m, in the order of their numbers.
     pub fn rims(&self) -> Vec<[f64; 2]> {
-        let RigidSurface::Convex(Convex {
-            surface: ConvexSurface::Bands(bands),
-            frame,
-            ..
-        }) = &self.skin
-        else {
+        let RigidSurface::Bands(convex) = &self.skin else {
             return Vec::new();
         };
         // The distance of the bands' origin from that of the axes is the same in both.
-        let origin = match frame {
-            Some(frame) => self.axes.rotate(frame.place(Vector::default())) * self.unit,
-            None => Vector::default(),
-        };
+        let origin = self.axes.rotate(convex.place().1) * self.unit;
         let place = |band: &Band| {
             let [z, r] = band.centre.map(|x| self.unit * x);
             [self.inertia.centre.z + origin.z + z, r]
         };
-        bands.iter().map(place).collect()
+        convex.surface.0.iter().map(place).collect()
     }
 
     /// The solid that an outline makes, of which only these arcs can touch.
@@ -252,8 +148,8 @@ impl Rigid {
         let unit = touching.iter().map(|arc| band(1.0)(arc).reach);
         let unit = unit.fold(0.0, f64::max);
         let bands = touching.iter().map(band(unit)).collect();
-        let surface = Convex::new(ConvexSurface::Bands(bands));
-        let body = Self::new(inertia, unit, |_| Ok(RigidSurface::Convex(surface)))?;
+        let surface = Convex::new(Bands(bands));
+        let body = Self::new(inertia, unit, |_| Ok(surface.into()))?;
         let within = sums(touching, centre)[0].abs() - content.abs();
         let concave = within > 1e-12 * content.abs();
         Ok(if concave {

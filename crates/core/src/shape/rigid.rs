@@ -1,9 +1,9 @@
 //! Bodies of any shape: mass, principal axes, and what can touch the plane.
 
-use super::convex::Convex;
-use super::pieces::Extent;
+use super::pieces::{Extent, Piece};
+use super::surface::{RigidSurface, each_surface};
 use super::top::Top;
-use super::tree::{BallTree, Least, NormalMotion, Point, Pruning};
+use super::tree::{BallTree, Point};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Parameter};
 use crate::math::{Quaternion, Symmetric, Vector};
@@ -38,14 +38,6 @@ pub struct RigidBall {
     pub centre: Vector,
     /// Its radius.
     pub radius: f64,
-}
-
-/// The parts of a body that can touch.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum RigidSurface {
-    /// Balls, or the vertices of a polyhedron.
-    Points(BallTree),
-    Convex(Convex),
 }
 
 /// Most balls, so that their numbers can be recorded.
@@ -198,7 +190,7 @@ impl Rigid {
             for (number, point) in points.iter_mut().enumerate() {
                 *point = Point::new(back.rotate(point.place) / unit, point.radius / unit, number);
             }
-            Ok(RigidSurface::Points(BallTree::new(what, points)?))
+            Ok(RigidSurface::Balls(BallTree::new(what, points)?))
         })
     }
 
@@ -207,7 +199,7 @@ impl Rigid {
     /// # Errors
     /// [`Error::Memory`].
     pub fn balls(&self) -> Result<Vec<RigidBall>, Error> {
-        let RigidSurface::Points(balls) = &self.skin else {
+        let RigidSurface::Balls(balls) = &self.skin else {
             return Ok(Vec::new());
         };
         let none = RigidBall {
@@ -232,10 +224,7 @@ impl Rigid {
     ) -> Result<Self, Error> {
         let (top, axes) = principal(&inertia, unit)?;
         let skin = skin(axes)?;
-        let extent = match skin {
-            RigidSurface::Points(_) => Extent::Balls,
-            RigidSurface::Convex(_) => Extent::Hull,
-        };
+        let extent = each_surface!(&skin, _balls => Extent::Balls, _convex => Extent::Hull);
         Ok(Self {
             inertia,
             unit,
@@ -256,23 +245,19 @@ impl Rigid {
     /// # Errors
     /// Unless the mass is positive, and the tensor is that of a body.
     pub fn with_inertia(self, inertia: Inertia) -> Result<Self, Error> {
-        let extent = self.extent;
-        let RigidSurface::Convex(convex) = &self.skin else {
-            let body = Self::of_balls(inertia, "points", self.balls()?.into_iter())?;
-            return Ok(body.with_extent(extent));
-        };
-        let shift = self
-            .axes
-            .inverse()
-            .rotate(inertia.centre - self.inertia.centre);
-        // No part is farther from the new centre than this.
-        let unit = self.unit + shift.norm();
-        Self::new(inertia, unit, |axes| {
-            let turn = self.axes.inverse() * axes;
-            let moved = convex.with_frame(turn, shift / self.unit, unit / self.unit);
-            Ok(RigidSurface::Convex(moved))
-        })
-        .map(|body: Self| body.with_extent(extent))
+        let body = each_surface!(&self.skin, _balls => {
+            Self::of_balls(inertia, "points", self.balls()?.into_iter())
+        }, convex => {
+            let back = self.axes.inverse();
+            let shift = back.rotate(inertia.centre - self.inertia.centre);
+            // No part is farther from the new centre than this.
+            let unit = self.unit + shift.norm();
+            Self::new(inertia, unit, |axes| {
+                let moved = convex.with_frame(back * axes, shift / self.unit, unit / self.unit);
+                Ok(moved.into())
+            })
+        })?;
+        Ok(body.with_extent(self.extent))
     }
 
     /// The principal moments of inertia, in kg m².
@@ -289,19 +274,37 @@ impl Rigid {
     /// The place of the part with this number, from 0, that is nearest to a plane with this normal, from the centre of mass in m; of several the
     /// one that comes down first as the normal changes with `turning`. All are in the axes that the body was given in.
     pub fn nearest(&self, number: usize, up: Vector, turning: Vector) -> Vector {
-        let part = match &self.skin {
-            RigidSurface::Points(balls) => {
-                let mut points = balls.points().iter();
-                let place = points.position(|point| point.number as usize == number);
-                place.expect("the number of a part")
-            }
-            RigidSurface::Convex(_) => number,
-        };
+        let part = each_surface!(&self.skin, balls => {
+            let mut points = balls.points().iter();
+            let place = points.position(|point| point.number as usize == number);
+            place.expect("the number of a part")
+        }, _convex => number);
         let back = self.axes.inverse();
         let nearest = self
             .skin
             .nearest(part, back.rotate(up), back.rotate(turning));
         self.axes.rotate(nearest) * self.unit
+    }
+
+    /// The parts with which it touches another body, in m and the principal axes, where they are known.
+    pub(super) fn pieces(&self) -> Option<Vec<Piece>> {
+        each_surface!(&self.skin, balls => {
+            let points = balls.points().iter();
+            match self.extent {
+                Extent::Balls => {
+                    let piece = |point: &Point| Piece::ball(point.place * self.unit, point.radius * self.unit);
+                    Some(points.map(piece).collect())
+                }
+                Extent::Hull => {
+                    let corners = points.map(|point| point.place * self.unit);
+                    Some(vec![Piece::polyhedron(corners.collect())?])
+                }
+                Extent::Other => None,
+            }
+        }, convex => {
+            let piece = (self.extent == Extent::Hull).then(|| convex.piece(self.unit));
+            Some(vec![piece??])
+        })
     }
 
     /// Smallest height of the centre of mass, in m, at which no part of the body is below the plane in an attitude of the axes that
@@ -319,26 +322,6 @@ pub(crate) fn up(attitude: Quaternion) -> Vector {
         2.0 * (y * z + w * x),
         1.0 - 2.0 * (x * x + y * y),
     )
-}
-
-impl RigidSurface {
-    /// The distance from the centre of mass to the lowest part, in the direction against `up`.
-    pub(crate) fn support(&self, up: Vector) -> f64 {
-        match self {
-            Self::Points(balls) => {
-                let at = NormalMotion {
-                    up,
-                    ..NormalMotion::default()
-                };
-                let exceeds = |least: &Least, limit: f64| least.gap > limit;
-                let lowest = balls.cheapest(&at, None, Pruning::EXACT, exceeds, |_, point, _| {
-                    point.opening(&at).0
-                });
-                -lowest.cost
-            }
-            Self::Convex(convex) => convex.support(up),
-        }
-    }
 }
 
 /// The principal moments over mR², and the rotation from the principal axes.

@@ -12,6 +12,7 @@
 //! axis, which is as thin as the surface: (a + r) cos α + b sin α ≤ (t − b²/2c) cos α + b sin α, which is largest at b = c tan α or at the
 //! largest b. A node has the bound that is lower. And r − **n**·(**p** − **c**) ≤ max r + max|**p** − **c**| for every **n**.
 
+use super::surface::NormalMotion;
 use crate::Error;
 use crate::math::Vector;
 use crate::memory::filled;
@@ -90,19 +91,6 @@ pub(crate) struct Least {
     pub gap: f64,
     pub rate: f64,
     pub reach: f64,
-}
-
-/// A body over the plane at one time of its flight.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct NormalMotion {
-    /// Height of the centre of mass, its rate and its acceleration.
-    pub height: f64,
-    pub rate: f64,
-    pub acceleration: f64,
-    /// **n**, **n**′ and **n**″, in the axes of the body.
-    pub up: Vector,
-    pub turning: Vector,
-    pub bending: Vector,
 }
 
 impl Point {

@@ -19,8 +19,10 @@ pub use outline::Arc;
 pub use spherocylinder::Spherocylinder;
 pub use spheroid::Spheroid;
 
+use super::pieces::Piece;
 use super::{check_density, check_length};
 use crate::Error;
+use crate::math::{Quaternion, Vector};
 use hollow::{INERTIA, WALL, made};
 
 /// A body of revolution in the core's units (lengths in R, masses in m).
@@ -124,6 +126,27 @@ impl Solid {
     /// Unless matter within the hull can have them: both positive, the second at most twice the first.
     pub fn with_inertia(self, moments: [f64; 2]) -> Result<Self, Error> {
         hollow::with_inertia(self, moments)
+    }
+
+    /// The parts with which it touches another body, in m and the principal axes, where they are known.
+    pub(super) fn pieces(&self) -> Option<Vec<Piece>> {
+        let (hull, unit) = (&self.scaled.hull, self.unit);
+        let Some(balls) = hull.balls() else {
+            let [across, along] = hull.semi_axes()?.map(|axis| axis * unit);
+            let semi_axes = [across, across, along];
+            let ellipsoid = Piece::ellipsoid(semi_axes, Quaternion::IDENTITY, Vector::default());
+            return Some(vec![ellipsoid]);
+        };
+        let place = |ball: &Ball| Vector::new(0.0, 0.0, unit * ball.offset);
+        if let (true, [one, two]) = (self.is_filled, &balls[..])
+            && one.offset != two.offset
+        {
+            let ends = [place(two), place(one)];
+            return Some(vec![Piece::rod(ends, unit * one.radius, false)]);
+        }
+        let piece = |ball: &Ball| Piece::ball(place(ball), unit * ball.radius);
+        let count = if self.is_filled { 1 } else { balls.len() };
+        Some(balls[..count].iter().map(piece).collect())
     }
 
     /// The largest value of [`Solid::lowest`] over all angles, in m.
