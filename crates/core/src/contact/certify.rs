@@ -1,9 +1,10 @@
 //! Steps that cannot pass a contact. Of a gap f and its rate f′ at a time it is known that f″ ≥ −M: the gap is then never less than
 //! the parabola f + f′s − Ms²/2, which is concave in s, so that there is no contact up to its first zero, nor between two times at which
-//! it is positive. The same holds backwards in time, with −f′ for f′.
+//! it is positive. The same holds backwards in time, with −f′ for f′. Each formula stands once, for numbers and for one in each lane.
 
 use crate::simd::Pack;
 use pulp::Simd;
+use std::ops::{Add, Div, Mul, Neg};
 
 /// The shortest step of a gap that does not close is this over M, 2⁻²⁶/M: rotation and gravity change it by less than the resolution in
 /// that time.
@@ -15,51 +16,108 @@ pub(super) const INVISIBLE: f64 = 1.0 / 4_503_599_627_370_496.0;
 /// Gaps up to this may be rounding errors: 2⁻⁴⁸ R.
 pub(super) const TOUCHING: f64 = 1.0 / 281_474_976_710_656.0;
 
+/// A number, or one in each lane.
+pub(super) trait Number:
+    Copy
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Mul<Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<Output = Self>
+{
+    /// a·b + c: in lanes rounded once.
+    fn mul_plus(self, factor: Self, addend: Self) -> Self;
+    fn root(self) -> Self;
+    fn size(self) -> Self;
+    fn at_least(self, other: f64) -> Self;
+    /// The first where this is negative, else the second.
+    fn if_negative(self, first: Self, second: Self) -> Self;
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn mul_plus(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn at_least(self, other: f64) -> Self {
+        self.max(other)
+    }
+
+    #[inline(always)]
+    fn if_negative(self, first: Self, second: Self) -> Self {
+        if self < 0.0 { first } else { second }
+    }
+}
+
+impl<S: Simd, const K: usize> Number for Pack<S, K> {
+    #[inline(always)]
+    fn mul_plus(self, factor: Self, addend: Self) -> Self {
+        self.mul_add(factor, addend)
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn at_least(self, other: f64) -> Self {
+        self.max(other)
+    }
+
+    #[inline(always)]
+    fn if_negative(self, first: Self, second: Self) -> Self {
+        self.lt(0.0).select(first, second)
+    }
+}
+
 /// √(f′² + 2Mf): the speed at which the parabola arrives at its zero.
 #[inline(always)]
-pub(super) fn closing_speed<S: Simd, const K: usize>(
-    width: Pack<S, K>,
-    rate: Pack<S, K>,
-    bound: Pack<S, K>,
-) -> Pack<S, K> {
-    rate.mul_add(rate, 2.0 * bound * width).sqrt()
+pub(super) fn closing_speed<N: Number>(width: N, rate: N, bound: N) -> N {
+    rate.mul_plus(rate, bound * 2.0 * width).root()
 }
 
-/// The first zero τ ≥ 0 of the parabola, before which there is no contact, in that of the two forms of the root in which no digits
-/// cancel; `closing` is its [`closing_speed`].
+/// The first zero τ ≥ 0 of the parabola, before which there is no contact; `closing` is its [`closing_speed`]. A step of a gap that does not
+/// close is no shorter than the shortest.
 #[inline(always)]
-pub(super) fn first_zero<S: Simd, const K: usize>(
-    width: Pack<S, K>,
-    rate: Pack<S, K>,
-    closing: Pack<S, K>,
-    bound: Pack<S, K>,
-) -> Pack<S, K> {
-    let approaching = rate.lt(0.0);
-    let speed = rate.abs() + closing;
-    let numerator = approaching.select(2.0 * width, speed.max(SHORTEST));
-    let denominator = approaching.select(speed, bound);
-    numerator / denominator
+pub(super) fn first_zero<N: Number>(width: N, rate: N, closing: N, bound: N) -> N {
+    let speed = rate.size() + closing;
+    zero(width, rate, speed, speed.at_least(SHORTEST), bound)
 }
 
-/// A lower bound on the gap during the interval of length `since` before its evaluation: the smaller end of the parabola.
+/// A zero of a parabola, in that of the two forms in which no digits cancel; `speed` is |f′| + [`closing_speed`], and so is `leaving`, by which a gap
+/// that opens has its zero.
 #[inline(always)]
-pub(super) fn least_before<S: Simd, const K: usize>(
-    since: Pack<S, K>,
-    width: Pack<S, K>,
-    rate: Pack<S, K>,
-    bound: Pack<S, K>,
-) -> Pack<S, K> {
-    let mean = mean_rate_before(since, rate, bound);
-    since.mul_add(-mean, width).min(width)
+pub(super) fn zero<N: Number>(width: N, rate: N, speed: N, leaving: N, bound: N) -> N {
+    rate.if_negative(width * 2.0, leaving) / rate.if_negative(speed, bound)
+}
+
+/// The parabola at the other end of the interval of length `since` before its evaluation. The gap in between is no less than the smaller of both ends.
+#[inline(always)]
+pub(super) fn before<N: Number>(since: N, width: N, rate: N, bound: N) -> N {
+    since.mul_plus(-mean_rate_before(since, rate, bound), width)
 }
 
 /// An upper bound on the mean f′ during the interval of length `since` before a time at which f′ is `rate`, f′ + ½M·since. Where it
 /// is negative, the gap was wider before: of a contact, for at least 2|f′|/M.
 #[inline(always)]
-pub(super) fn mean_rate_before<S: Simd, const K: usize>(
-    since: Pack<S, K>,
-    rate: Pack<S, K>,
-    bound: Pack<S, K>,
-) -> Pack<S, K> {
-    since.mul_add(0.5 * bound, rate)
+pub(super) fn mean_rate_before<N: Number>(since: N, rate: N, bound: N) -> N {
+    since.mul_plus(bound * 0.5, rate)
 }

@@ -1,6 +1,6 @@
 //! The first contact of convex surfaces: the first root of the bound that the supports of their parts make.
 
-use super::certify::{SHORTEST, TOUCHING};
+use super::certify::{SHORTEST, TOUCHING, before};
 use super::plane::{BackwardBound, Departure, GapExpansion, Step, first_root};
 use crate::motion::SpinBounds;
 #[cfg(test)]
@@ -103,7 +103,7 @@ impl<S: ConvexSurface> Convex<S> {
         let bound = self.bounds(part, at, turn).up_to(since);
         let support = self.surface.along(part, own);
         let (width, rate) = support.opening(own);
-        let before = width - since * (rate + 0.5 * bound * since) - support.beyond_tangent(-since);
+        let before = before(since, width, rate, bound) - support.beyond_tangent(-since);
         let gap = GapExpansion {
             width,
             rate,
@@ -173,7 +173,7 @@ fn convex_root(
         after = first_root(width, rate, bound);
     }
     let after = after.min(most);
-    let parabola = |s: f64| width + s * (rate - 0.5 * bound * s);
+    let parabola = |s: f64| before(-s, width, rate, bound);
     #[cfg(test)]
     evaluations::add(Evaluation::Support);
     let beyond = support.beyond_tangent(after);
@@ -182,21 +182,21 @@ fn convex_root(
         return after;
     }
     // Where the gap is 0 at the beginning and opens, a point between it and the root.
-    let mut before = (0.0, width);
+    let mut near = (0.0, width);
     let mut inside = 0.5 * after;
-    while before.1 <= 0.0 && rate > 0.0 {
+    while near.1 <= 0.0 && rate > 0.0 {
         #[cfg(test)]
         evaluations::add(Evaluation::Support);
         let found = parabola(inside) - support.beyond_tangent(inside);
         if found > 0.0 {
-            before = (inside, found);
+            near = (inside, found);
         }
         inside *= 0.5;
         if bound * inside <= SHORTEST {
             return SHORTEST / bound;
         }
     }
-    let chord = before.0 + (after - before.0) * before.1 / (before.1 - found);
+    let chord = near.0 + (after - near.0) * near.1 / (near.1 - found);
     if rate < 0.0 {
         chord
     } else {

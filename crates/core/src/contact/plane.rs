@@ -22,7 +22,7 @@
 //! there without a step before. To where f″ expects it the search converges with the third order. It ends when what is left of the gap is below
 //! the resolution. An overlap at the end of a step is rounding: one that approaches is a contact now, one that separates is none.
 
-use super::certify::{SHORTEST, TOUCHING};
+use super::certify::{TOUCHING, before, closing_speed, first_zero, zero};
 use crate::motion::SpinBounds;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
@@ -88,21 +88,12 @@ impl BackwardBound {
 }
 
 impl GapExpansion {
-    /// When it will be 0, or was if it is negative, by f + f′s + f″s²/2, in that of the two forms of the root in which no digits cancel; no
-    /// number if it never is.
+    /// When it will be 0, or was if it is negative, by f + f′s + f″s²/2; no number if it never is.
     #[inline(always)]
     pub fn closes(&self) -> f64 {
-        let Self {
-            width,
-            rate,
-            acceleration,
-        } = *self;
-        let speed = rate.abs() + (rate * rate - 2.0 * acceleration * width).sqrt();
-        if rate < 0.0 {
-            2.0 * width / speed
-        } else {
-            -speed / acceleration
-        }
+        let (width, rate, bound) = (self.width, self.rate, -self.acceleration);
+        let speed = rate.abs() + closing_speed(width, rate, bound);
+        zero(width, rate, speed, speed, bound)
     }
 
     /// When it will be 0, or was, if that is after `certain` and so near to it that a look from there will certify the time between: M times that
@@ -115,21 +106,10 @@ impl GapExpansion {
     }
 }
 
-/// The first root ≥ 0 of f + f′s − Ms²/2 with f ≥ 0, and no less than the shortest step where the gap does not close.
+/// [`first_zero`] of f ≥ 0, f′ and M.
 #[inline(always)]
 pub(super) fn first_root(width: f64, rate: f64, bound: f64) -> f64 {
-    let acceleration = -bound;
-    let root = GapExpansion {
-        width,
-        rate,
-        acceleration,
-    }
-    .closes();
-    if rate < 0.0 {
-        root
-    } else {
-        root.max(SHORTEST / bound)
-    }
+    first_zero(width, rate, closing_speed(width, rate, bound), bound)
 }
 
 impl RigidSurface {
@@ -198,13 +178,12 @@ impl BallTree {
         let bound = |reach: f64| turn.whole * reach - at.acceleration;
         // The parabola of the least gap, the least rate and the largest M of a node lies below those of all its self.
         let exceeds = |least: &Least, limit: f64| {
-            let below = limit * (least.rate - 0.5 * limit * bound(least.reach));
-            least.gap.max(0.0) + below > 0.0
+            before(-limit, least.gap.max(0.0), least.rate, bound(least.reach)) > 0.0
         };
         let cost = |part: usize, point: &Point, limit: f64| {
             let (width, rate) = opening(part, point);
             let (width, bound) = (width.max(0.0), bound(f64::from(point.reach)));
-            if width + limit * (rate - 0.5 * limit * bound) > 0.0 {
+            if before(-limit, width, rate, bound) > 0.0 {
                 f64::INFINITY
             } else {
                 first_root(width, rate, bound)
@@ -248,7 +227,7 @@ impl BallTree {
         let point = &self.points()[part];
         let (width, rate) = point.opening(at);
         let bound = turn.whole * f64::from(point.reach) - at.acceleration;
-        let before = width - since * (rate + 0.5 * bound * since);
+        let before = before(since, width, rate, bound);
         let gap = GapExpansion {
             width,
             rate,

@@ -2,7 +2,7 @@
 
 use super::gap::{GapEvaluation, Search};
 use super::{FAR, NEAR, SMALL};
-use crate::contact::certify::{INVISIBLE, LAST, least_before, mean_rate_before};
+use crate::contact::certify::{INVISIBLE, LAST, before, mean_rate_before};
 use crate::motion::{Attitude, Flight};
 use crate::shape::Hull;
 use crate::simd::{Mask, Pack};
@@ -233,16 +233,15 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         hull: &H,
     ) -> Mask<S, K> {
         let (since, bound) = (time - certain, self.curvature_bound);
-        let least = least_before(since, evaluation.gap.width, evaluation.gap.rate, bound);
-        let least = if H::TWO {
+        let (width, rate) = (evaluation.gap.width, evaluation.gap.rate);
+        let mut least = before(since, width, rate, bound).min(width);
+        if H::TWO {
             let other = hull.part(!evaluation.gap.part.one);
             let (width, rate) = self
                 .instant(time, evaluation.attitude)
                 .opening(&other, hull);
-            least.min(least_before(since, width, rate, bound))
-        } else {
-            least
-        };
+            least = least.min(before(since, width, rate, bound).min(width));
+        }
         !certain.lt(time) | (0.0 * since).lt(least)
     }
 
