@@ -63,7 +63,9 @@ impl<S: ConvexSurface> Convex<S> {
         evaluations::add(Evaluation::Support);
         let mut moved = NormalMotion::default();
         let own = self.own(at, &mut moved);
-        let each = |part: usize| {
+        let mut first = Step::NEVER;
+        // Not a closure, which would not be compiled for the SIMD level of its caller.
+        for part in 0..self.surface.parts() {
             let bounds = self.bounds(part, at, turn);
             let support = self.surface.along(part, own);
             let now = support.opening(own);
@@ -73,7 +75,7 @@ impl<S: ConvexSurface> Convex<S> {
                 _ => now,
             };
             let length = convex_root(&support, (width.max(0.0), rate, bounds), most);
-            Step {
+            first = first.or(Step {
                 length,
                 part,
                 width,
@@ -81,10 +83,9 @@ impl<S: ConvexSurface> Convex<S> {
                 closes: rate < 0.0 && length < most,
                 bound: bounds.up_to(length),
                 only_until: f64::INFINITY,
-            }
-        };
-        let parts = 0..self.surface.parts();
-        parts.map(each).fold(Step::NEVER, Step::or)
+            });
+        }
+        first
     }
 
     /// As [`crate::shape::RigidSurface`]'s.

@@ -15,9 +15,8 @@ pub(crate) use block::{BLOCK, bounce_block, even, share};
 pub use lanes::one_lane::{
     FlightEnd, FlightStart, NoConvergence, SingleImpact, collide, first_contact, trajectory,
 };
-pub(crate) use lanes::{Impact, PLACES, Pose, of_group};
+pub(crate) use lanes::{Bounces, Impact, PLACES, Pose, of_group};
 pub(crate) use plan::Plan;
-pub(crate) use recorded::Bounces;
 pub use recorded::{PER_IMPACT, PER_PARTICLE};
 pub use release::{About, Height, Orientation, Spin};
 pub use scales::Scales;

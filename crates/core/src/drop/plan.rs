@@ -1,6 +1,5 @@
 //! A run that has been checked, in the core's units, ready for the bounce loop.
 
-use super::rigid::RigidState;
 use super::{Height, Orientation, Run, Scales};
 use crate::Error;
 use crate::drop::Limits;
@@ -25,6 +24,18 @@ pub(crate) struct Plan<'a> {
     pub slope: f64,
     /// [`Run::is_at_rest`].
     pub at_rest: bool,
+}
+
+/// Position and motion of a particle, in the core's units. The horizontal position is omitted, because the motion does not depend on it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RigidState {
+    /// Height and velocity of the centre of mass.
+    pub height: f64,
+    pub velocity: Vector,
+    /// The rotation from the principal axes to those of space.
+    pub attitude: Quaternion,
+    /// Angular velocity in the principal axes.
+    pub spin: Vector,
 }
 
 /// Largest magnitude of a component of spin or velocity, in the core's units, so that squares do not overflow.

@@ -1,6 +1,6 @@
 //! The recorded variables of an impact and of a particle, in SI units.
 
-use super::{Height, Impact, Plan, Pose, StopReason, bounce_block};
+use super::{Bounces, Height, Impact, Plan, Pose, StopReason, bounce_block};
 use crate::Error;
 use crate::law::{Law, Normal};
 use crate::math::Quaternion;
@@ -11,9 +11,6 @@ use crate::simd::{Level, Mask, Pack};
 use crate::threads::Monitor;
 use pulp::Simd;
 use std::ops::Range;
-
-/// Particles that bounce on the plane: rows of impacts.
-pub(crate) struct Bounces;
 
 impl Process for Bounces {
     type Plan<'a> = Plan<'a>;

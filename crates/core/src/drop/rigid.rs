@@ -1,6 +1,7 @@
 //! The bounce loop for bodies of any shape, one particle at a time.
 
 use super::lanes::{Impact, ImpactSink, Lost, Pose};
+use super::plan::RigidState;
 use super::stop::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use crate::Fault;
 use crate::contact::{Departure, Fall, FirstContact, NoContact};
@@ -12,18 +13,6 @@ use pulp::{Scalar, Simd, WithSimd};
 
 /// g, in units of itself.
 const GRAVITY: f64 = 1.0;
-
-/// Position and motion of a particle, in the core's units. The horizontal position is omitted, because the motion does not depend on it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RigidState {
-    /// Height and velocity of the centre of mass.
-    pub height: f64,
-    pub velocity: Vector,
-    /// The rotation from the principal axes to those of space.
-    pub attitude: Quaternion,
-    /// Angular velocity in the principal axes.
-    pub spin: Vector,
-}
 
 /// A body, its law and the plane that it bounces on.
 pub(super) struct Bouncing<'a> {

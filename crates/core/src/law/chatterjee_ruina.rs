@@ -1,7 +1,9 @@
 //! The law of A. Chatterjee and A. Ruina, *A new algebraic rigid-body collision law based on impulse space considerations*,
 //! J. Appl. Mech. **65**, 939 (1998).
 
-use super::{Compliant, Components, Contact, Creation, LawKind, Response, Slip};
+use super::{
+    Compliant, Components, Contact, Creation, ImpulseRule, LawKind, Response, Sliding, Slip,
+};
 use crate::Error;
 use crate::describe::{Arguments, Interval, Kind, Parameter};
 use crate::simd::Pack;
@@ -65,12 +67,13 @@ impl ChatterjeeRuina {
             friction,
         })
     }
+}
 
-    /// The response to a contact in each lane.
+impl ImpulseRule for ChatterjeeRuina {
     #[inline(always)]
-    pub(super) fn respond<S: Simd, const SPACE: bool>(
+    fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
+        contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
         restitution: Pack<S, 1>,
     ) -> Response<Pack<S, 1>> {
         let speed = contact.approach_speed();

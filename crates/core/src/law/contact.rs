@@ -1,20 +1,9 @@
 //! A contact as a law sees it: a velocity and a compliance; and the impulse that a law answers with.
 
-use super::AxialCompliance;
+use super::{AxialCompliance, Components};
 use crate::math::Vector;
 use crate::simd::{Mask, Pack, one};
 use pulp::{Scalar, Simd};
-
-/// Components along **n**, **u** and **w**: numbers, or one in each lane.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Components<T = f64> {
-    /// Along the plane normal.
-    pub normal: T,
-    /// Along the horizontal direction of the symmetry axis.
-    pub along: T,
-    /// Perpendicular to both.
-    pub across: T,
-}
 
 /// A contact, in the core's units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,41 +30,6 @@ pub struct Answer {
     pub impulse: Vector,
     /// Normal velocity of the point of contact after the impact, ≥ 0.
     pub separation_speed: f64,
-}
-
-impl<T: Copy> Components<T> {
-    /// The same function of every component.
-    #[inline(always)]
-    pub(crate) fn map<U>(self, f: impl Fn(T) -> U) -> Components<U> {
-        Components {
-            normal: f(self.normal),
-            along: f(self.along),
-            across: f(self.across),
-        }
-    }
-}
-
-impl Components<Pack<Scalar, 1>> {
-    /// These components, x along **u**, y along **w** and z along **n**, in a single lane.
-    #[inline(always)]
-    pub(super) fn in_lane(v: Vector) -> Self {
-        Self {
-            normal: one(v.z),
-            along: one(v.x),
-            across: one(v.y),
-        }
-    }
-
-    /// The vector with these components.
-    #[inline(always)]
-    pub(super) fn in_axes(self) -> Vector {
-        let Components {
-            normal,
-            along,
-            across,
-        } = self.map(|component| component.as_slice()[0]);
-        Vector::new(along, across, normal)
-    }
 }
 
 impl Contact {

@@ -1,6 +1,8 @@
 //! The law without friction: **P** ∥ **n**.
 
-use super::{Compliant, Components, Contact, Creation, LawKind, Response, Slip};
+use super::{
+    Compliant, Components, Contact, Creation, ImpulseRule, LawKind, Response, Sliding, Slip,
+};
 use crate::describe::Kind;
 use crate::simd::Pack;
 use pulp::Simd;
@@ -24,12 +26,13 @@ impl Frictionless {
         creates_energy: Creation::Never,
         from_rest: Some([Slip::Free, Slip::Free]),
     };
+}
 
-    /// The response to a contact in each lane.
+impl ImpulseRule for Frictionless {
     #[inline(always)]
-    pub(super) fn respond<S: Simd, const SPACE: bool>(
+    fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
+        contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
         normal: Pack<S, 1>,
     ) -> Response<Pack<S, 1>> {
         let speed = contact.approach_speed();

@@ -13,6 +13,7 @@ mod contact;
 mod coulomb;
 mod custom;
 mod frictionless;
+mod kind;
 mod normal;
 mod rule;
 mod tangential;
@@ -21,18 +22,54 @@ pub use axial::AxialCompliance;
 pub use chatterjee_ruina::ChatterjeeRuina;
 pub use compliance::Compliance;
 use compliant::Compliant;
-pub use contact::{Answer, Components, Contact, Response};
+pub use compliant::Components;
+pub use contact::{Answer, Contact, Response};
 pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
 pub use custom::{CustomLaw, ImpulseFunction};
 pub use frictionless::Frictionless;
+pub use kind::{Creation, LawKind, Slip};
+pub(crate) use kind::{MOST_CONTACTS, Respond};
 pub use normal::*;
-pub use rule::{Creation, Law, LawKind, Slip};
-pub(crate) use rule::{MOST_CONTACTS, Respond};
+pub use rule::Law;
 pub use tangential::TangentialRestitution;
 
 use crate::simd::Pack;
 use coulomb::Sliding;
 use pulp::Simd;
+
+/// A rule, as a law applies it.
+trait ImpulseRule {
+    /// The response to a contact in each lane. Without `SPACE` nothing happens along **w**.
+    fn respond<S: Simd, const SPACE: bool>(
+        &self,
+        contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
+        normal: Pack<S, 1>,
+    ) -> Response<Pack<S, 1>>;
+
+    /// The responses to vectors of contacts of bodies of revolution.
+    #[inline(always)]
+    fn respond_all<S: Simd, const SPACE: bool>(
+        &self,
+        contacts: &[Contact<Pack<S, 1>>],
+        normal: &[Pack<S, 1>],
+        responses: &mut [Response<Pack<S, 1>>],
+    ) {
+        one_by_one::<S, SPACE>(self, contacts, normal, responses);
+    }
+}
+
+/// Those of contacts that have nothing to do with each other.
+#[inline(always)]
+fn one_by_one<S: Simd, const SPACE: bool>(
+    rule: &(impl ImpulseRule + ?Sized),
+    contacts: &[Contact<Pack<S, 1>>],
+    normal: &[Pack<S, 1>],
+    responses: &mut [Response<Pack<S, 1>>],
+) {
+    for (i, (contact, response)) in contacts.iter().zip(responses).enumerate() {
+        *response = rule.respond::<S, SPACE>(contact, normal[i]);
+    }
+}
 
 rule::laws! {
     /// The paper's law (9).

@@ -1,12 +1,12 @@
 //! The choice of a law.
 
 use super::{
-    Answer, Compliance, Components, Contact, CustomLaw, Frictionless, ImpulseFunction, Material,
-    Normal, Response, Rule, normal::scattered, tangential::Steady,
+    Answer, Compliance, Components, Contact, CustomLaw, Frictionless, ImpulseFunction,
+    MOST_CONTACTS, Material, Normal, Respond, Response, Rule, normal::scattered,
+    tangential::Steady,
 };
 use crate::Error;
 use crate::Fault;
-use crate::describe::Kind;
 use crate::math::Vector;
 use crate::simd::{Pack, one};
 use pulp::{Scalar, Simd, WithSimd};
@@ -22,42 +22,6 @@ pub struct Law<'a> {
     pub rule: Rule,
     /// A law of one's own, which takes the place of coefficient and rule.
     pub custom: Option<CustomLaw<'a>>,
-}
-
-/// A law in the table of laws.
-#[derive(Debug, Clone, Copy)]
-pub struct LawKind {
-    /// Its description, whose parameters come after the normal coefficient, which all laws have.
-    pub kind: Kind<Rule>,
-    /// The possibility that it creates kinetic energy.
-    pub creates_energy: Creation,
-    /// Slip in an impact from rest within the friction cone, and beyond it; none where that has no closed form.
-    pub from_rest: Option<[Slip; 2]>,
-}
-
-/// The possibility that a law creates kinetic energy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Creation {
-    /// It cannot.
-    Never,
-    /// It can.
-    Possible,
-    /// It can where the parameter has this value.
-    Where(&'static str, &'static str),
-}
-
-/// Slip during an impact from rest, before which the contact does not slip. Each is a closed form of the first impact,
-/// in `analytic/_impulse.py` of the Python package.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Slip {
-    /// It slips freely, for nothing acts along the plane.
-    Free,
-    /// It sticks.
-    Stuck,
-    /// It slips with friction at its limit, μ times the normal force.
-    Sliding,
-    /// The tangential impulse is (1 + e_t) times that of a sticking plastic impact.
-    Part,
 }
 
 /// Makes the rule that is one of these laws, and the table of them.
@@ -82,6 +46,21 @@ macro_rules! laws {
             ) -> Response<Pack<S, 1>> {
                 match self {
                     $(Self::$law(law) => law.respond::<S, SPACE>(contact, normal)),*
+                }
+            }
+
+            /// The responses to vectors of contacts of bodies of revolution.
+            #[inline(always)]
+            fn respond_all<S: Simd, const SPACE: bool>(
+                &self,
+                contacts: &[Contact<Pack<S, 1>>],
+                normal: &[Pack<S, 1>],
+                responses: &mut [Response<Pack<S, 1>>],
+            ) {
+                match self {
+                    $(Self::$law(law) => {
+                        law.respond_all::<S, SPACE>(contacts, normal, responses);
+                    }),*
                 }
             }
         }
@@ -199,30 +178,6 @@ impl<'a> Law<'a> {
     }
 }
 
-/// Largest number of vectors of contacts that a law is given at once.
-pub(crate) const MOST_CONTACTS: usize = 6;
-
-/// A law in the form that the bounce loop uses: it answers all contacts at once, so that those that take long can share the lanes.
-pub(crate) trait Respond {
-    /// Returns whether ε_n scatters.
-    fn scatters(&self) -> bool;
-
-    /// Answers up to [`MOST_CONTACTS`] vectors of contacts; `chances` has a uniform number in (0, 1) for each if ε_n scatters. Without
-    /// `SPACE` no contact velocity has a component along **w**.
-    fn respond_all<S: Simd, const SPACE: bool>(
-        &self,
-        contacts: &[Contact<Pack<S, 1>>],
-        chances: &[Pack<S, 1>],
-        responses: &mut [Response<Pack<S, 1>>],
-    );
-
-    /// The law of one's own that is to be asked instead, if this is one.
-    #[inline(always)]
-    fn custom(&self) -> Option<CustomLaw<'_>> {
-        None
-    }
-}
-
 impl Respond for Law<'_> {
     #[inline(always)]
     fn scatters(&self) -> bool {
@@ -273,29 +228,15 @@ impl<S: Simd, const SPACE: bool> WithSimd for Choice<'_, '_, S, SPACE> {
             chances,
             responses,
         } = self;
-        let coefficient = |i: usize, contact: &Contact<Pack<S, 1>>| {
-            let normal = law.normal.in_lanes(contact.approach_speed());
+        let simd = contacts[0].velocity.normal.simd();
+        let mut normal = [Pack::splat(simd, 0.0); MOST_CONTACTS];
+        for (i, contact) in contacts.iter().enumerate() {
+            normal[i] = law.normal.in_lanes(contact.approach_speed());
             if law.scatters() {
-                scattered(normal, law.deviation, chances[i])
-            } else {
-                normal
+                normal[i] = scattered(normal[i], law.deviation, chances[i]);
             }
-        };
-        if let (true, Rule::Coulomb(rule)) = (SPACE, &law.rule)
-            && rule.takes_long()
-        {
-            let simd = contacts[0].velocity.normal.simd();
-            let mut normal = [Pack::splat(simd, 0.0); MOST_CONTACTS];
-            for (i, contact) in contacts.iter().enumerate() {
-                normal[i] = coefficient(i, contact);
-            }
-            rule.respond_in_space(contacts, &normal, responses);
-            return;
         }
-        for (i, (contact, response)) in contacts.iter().zip(responses).enumerate() {
-            *response = law
-                .rule
-                .respond::<S, SPACE>(contact, coefficient(i, contact));
-        }
+        law.rule
+            .respond_all::<S, SPACE>(contacts, &normal, responses);
     }
 }

@@ -1,6 +1,9 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{Compliant, Components, Contact, Creation, LawKind, Respond, Response, Slip};
+use super::{
+    Compliant, Components, Contact, Creation, ImpulseRule, LawKind, Respond, Response, Sliding,
+    Slip,
+};
 use crate::Error;
 use crate::describe::{Argument, Arguments, Interval, Kind, Parameter};
 use crate::simd::{Operand, Pack};
@@ -50,16 +53,6 @@ impl TangentialRestitution {
         Ok(Self { tangential })
     }
 
-    /// The response to a contact in each lane.
-    #[inline(always)]
-    pub(super) fn respond<S: Simd, const SPACE: bool>(
-        &self,
-        contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
-        normal: Pack<S, 1>,
-    ) -> Response<Pack<S, 1>> {
-        self.with::<S, SPACE>(-normal, -(normal + 1.0), contact)
-    }
-
     /// The response for `rebound` = −ε_n and `change` = −(1 + ε_n).
     #[inline(always)]
     fn with<S: Simd, const SPACE: bool>(
@@ -77,6 +70,17 @@ impl TangentialRestitution {
             }),
             separation_speed: velocity.normal * rebound, // (9)
         }
+    }
+}
+
+impl ImpulseRule for TangentialRestitution {
+    #[inline(always)]
+    fn respond<S: Simd, const SPACE: bool>(
+        &self,
+        contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
+        normal: Pack<S, 1>,
+    ) -> Response<Pack<S, 1>> {
+        self.with::<S, SPACE>(-normal, -(normal + 1.0), contact)
     }
 }
 

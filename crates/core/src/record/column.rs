@@ -1,6 +1,6 @@
 //! The columns of a table: the values of a variable in one type of elements, a cell for each event or row.
 
-use super::Variable;
+use super::variable::{Element, Elements, Variable};
 use crate::math::Vectors;
 use crate::memory::zeros;
 use crate::simd::Pack;
@@ -11,21 +11,6 @@ use std::ops::Range;
 /// The parameters that the size of a table follows from.
 pub(super) const ROOM: &str = "particles * impacts";
 
-/// Something for each type of elements that a column can have.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Elements<N, F, P, C> {
-    /// Real numbers, as many in a row as the variable has components.
-    Numbers(N),
-    /// Numbers that stand for names.
-    Flags(F),
-    /// Numbers of parts of a body.
-    Parts(P),
-    /// Counts.
-    Counts(C),
-}
-
-/// A type of elements.
-pub type Element = Elements<(), (), (), ()>;
 /// The recorded values of a variable.
 pub type Values = Elements<Vec<f64>, Vec<i8>, Vec<i32>, Vec<i64>>;
 /// Slices of a column.

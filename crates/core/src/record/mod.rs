@@ -5,9 +5,9 @@ mod event;
 mod table;
 mod variable;
 
-pub use column::{Columns, Element, Elements, Values};
+pub use column::{Columns, Values};
 pub(crate) use column::{InLanes, Slices, Stored};
 pub(crate) use event::{Described, Event, Meanwhile, Process, Sink, Source, variables};
 pub use table::Records;
 pub(crate) use table::Table;
-pub use variable::{Variable, When};
+pub use variable::{Element, Elements, Variable, When};

@@ -1,7 +1,8 @@
 //! The table of all events of a run, filled block by block from many threads.
 
-use super::column::{Columns, Elements, ROOM, TableColumns, TableRows, Values, first};
+use super::column::{Columns, ROOM, TableColumns, TableRows, Values, first};
 use super::event::{Described, Event, Meanwhile, Process, Sink, Source};
+use super::variable::Elements;
 use super::{Slices, Variable};
 use crate::Error;
 use crate::memory::zeros;

@@ -1,6 +1,20 @@
 //! Metadata of a recorded variable.
 
-use super::column::{Element, Elements};
+/// Something for each type of elements that a column can have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Elements<N, F, P, C> {
+    /// Real numbers, as many in a row as the variable has components.
+    Numbers(N),
+    /// Numbers that stand for names.
+    Flags(F),
+    /// Numbers of parts of a body.
+    Parts(P),
+    /// Counts.
+    Counts(C),
+}
+
+/// A type of elements.
+pub type Element = Elements<(), (), (), ()>;
 
 /// Metadata of a recorded variable.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,7 @@
 //! An axis of half-open bins, lo ≤ x < hi, in which x is compared with exactly the edges that were given.
 
 use super::cells::Cells;
+use super::whole::ROUND;
 use crate::Error;
 use crate::memory::copied;
 use crate::simd::Pack;
@@ -10,8 +11,6 @@ use pulp::Simd;
 const UNIFORM: f64 = 1e-7;
 /// Within this distance of an edge, in bin widths, the edge itself decides; it must exceed [`UNIFORM`] and rounding.
 const NEAR: f64 = 1e-6;
-/// 1.5 · 2⁵²: adding it to |x| < 2⁵¹ rounds to the nearest integer, which then stands in the low bits.
-pub(super) const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Bins between edges, with one more below and one more above.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,8 +3,7 @@
 //! The cell of x is computed by a formula that is monotonic in x in spite of rounding. Edges in an earlier cell are therefore below
 //! x and edges in a later cell above it; only edges in the same cell have to be compared.
 
-use super::axis::ROUND;
-use super::places::whole;
+use super::whole::{ROUND, whole};
 use crate::Error;
 use crate::memory::{collected, empty, zeros};
 use crate::simd::Pack;

@@ -1,12 +1,14 @@
 //! The sink that counts impacts by row and ε, without moments.
 
 use super::HistogramSink;
-use super::axis::{Axis, ROUND};
-use super::histogram::{Bins, By, Histogram, UNSPOILT, WHAT};
+use super::axis::Axis;
+use super::bins::{Bins, By, WHAT};
+use super::histogram::{Histogram, UNSPOILT};
 use super::moments::Sums;
 use super::narrow::Recently;
-use super::places::{all_sites, last, sites, whole};
+use super::places::{all_sites, last, sites};
 use super::rows::{CREATES_ENERGY, Rows, pulling};
+use super::whole::{ROUND, whole};
 use crate::Error;
 use crate::drop::{PLACES, of_group};
 use crate::memory::zeros;

@@ -1,71 +1,17 @@
 //! The statistics of a run: grids of counts, and sums, whose size depends on the bins alone.
 
-use super::axis::Axis;
+use super::bins::{Bins, WHAT};
 use super::rows::Rows;
 use crate::Error;
 use crate::StopReason;
 use crate::memory::zeros;
 use bytemuck_alloc::allocation::cast_vec;
 
-/// The parameters that the size of a histogram follows from.
-pub(super) const WHAT: &str = "velocity_bins or impacts, times restitution_bins and fraction_bins";
 /// Why a lock on the histogram that threads share is never poisoned.
 pub(crate) const UNSPOILT: &str = "no thread panics while it adds to the histogram";
 /// Number of sites that are examined together when grids are merged: most sites of a fine grid are empty, and pages that are never
 /// written to take no memory.
 const PART: usize = 512;
-
-/// The quantity by which the rows of the grids are divided.
-#[derive(Debug, Clone, PartialEq)]
-pub enum By {
-    /// Bins of the impact velocity, in m/s.
-    Velocity(Axis),
-    /// The number of the impact, from the first up to this one.
-    Number(usize),
-}
-
-/// Rows and columns of the grids.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Bins {
-    /// Rows of both grids.
-    pub by: By,
-    /// Columns of the grid of ε.
-    pub restitution: Axis,
-    /// Columns of the grid of E_rot/E_tot. Without them impacts are only counted, by row and ε, and no moments are summed.
-    pub fraction: Option<Axis>,
-}
-
-impl Bins {
-    /// Number of rows.
-    pub fn rows(&self) -> usize {
-        match &self.by {
-            By::Velocity(axis) => axis.bins(),
-            By::Number(impacts) => *impacts,
-        }
-    }
-
-    /// Returns whether all bins of every axis have the same width.
-    pub(crate) fn are_even(&self) -> bool {
-        let rows = match &self.by {
-            By::Velocity(axis) => axis.is_even(),
-            By::Number(_) => true,
-        };
-        rows && self.restitution.is_even() && self.fraction.as_ref().is_none_or(Axis::is_even)
-    }
-
-    /// Checks that the sites of each grid, and one more, can be numbered with 32 bits.
-    pub(crate) fn check(&self) -> Result<(), Error> {
-        let check = |name: &'static str, axis: &Axis| {
-            let sites = self.rows().saturating_mul(axis.bins() + 1);
-            let allowed = "at most 2^32 - 1: rows times (bins + 3)";
-            Error::unless(sites <= u32::MAX as usize, name, sites, allowed)
-        };
-        check("sites of the grid of restitution_bins", &self.restitution)?;
-        self.fraction.as_ref().map_or(Ok(()), |axis| {
-            check("sites of the grid of fraction_bins", axis)
-        })
-    }
-}
 
 /// Counts and sums of the impacts of any number of particles. Histograms with the same bins merge exactly.
 #[derive(Debug, Clone, PartialEq)]

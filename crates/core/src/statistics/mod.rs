@@ -1,6 +1,7 @@
 //! Statistics that merge exactly: integer counts and integer sums, which do not depend on the order of addition.
 
 mod axis;
+mod bins;
 mod cells;
 mod count_sink;
 mod histogram;
@@ -10,12 +11,14 @@ mod narrow;
 mod places;
 mod recent;
 mod rows;
+mod whole;
 mod words;
 
 pub use axis::Axis;
+pub use bins::{Bins, By};
 pub(crate) use count_sink::CountSink;
 pub(crate) use histogram::UNSPOILT;
-pub use histogram::{Bins, By, Grid, Histogram};
+pub use histogram::{Grid, Histogram};
 pub(crate) use moment_sink::MomentSink;
 pub use moments::{Moments, Sums};
 pub use rows::{CREATES_ENERGY, Gains, PULLS, Rows};

@@ -1,15 +1,17 @@
 //! The sink that counts impacts for a [`Histogram`] and sums their moments.
 
 use super::HistogramSink;
-use super::axis::{Axis, ROUND};
-use super::histogram::{Bins, By, Histogram, UNSPOILT, WHAT};
+use super::axis::Axis;
+use super::bins::{Bins, By, WHAT};
+use super::histogram::{Histogram, UNSPOILT};
 use super::moments::Sums;
 use super::narrow::Recently;
-use super::places::{all_sites, last, nowhere, sites, whole};
+use super::places::{all_sites, last, nowhere, sites};
 use super::recent::{
     COARSE, Extremes, Half, LARGEST, QUANTA, Recent, fraction_quanta, quanta, words,
 };
 use super::rows::{CREATES_ENERGY, Rows, pulling};
+use super::whole::{ROUND, whole};
 use crate::Error;
 use crate::drop::{PLACES, of_group};
 use crate::memory::{filled, zeros};

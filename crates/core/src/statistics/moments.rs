@@ -5,7 +5,6 @@
 //! to the last bit.
 
 use super::recent::{Extremes, QUANTA, Totals};
-use super::words::float;
 
 /// A two's-complement integer of N 64-bit words, low word first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -255,6 +254,13 @@ fn shifted(x: u128, places: usize) -> [u64; 4] {
     out[places] = x as u64;
     out[places + 1] = (x >> 64) as u64;
     out
+}
+
+/// Calls `visit` with the bits of a number.
+pub(super) fn float(number: &mut f64, visit: &mut impl FnMut(&mut u64)) {
+    let mut bits = number.to_bits();
+    visit(&mut bits);
+    *number = f64::from_bits(bits);
 }
 
 #[cfg(test)]

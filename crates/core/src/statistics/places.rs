@@ -1,14 +1,9 @@
 //! The sites of a grid at which impacts are counted: integers in the low bits of doubles, to which [`ROUND`] was added.
 
-use super::axis::{Axis, ROUND};
+use super::axis::Axis;
+use super::whole::ROUND;
 use crate::simd::{LANES, Mask, Pack};
 use pulp::Simd;
-
-/// The integer in the low bits of `x`, to which [`ROUND`] was added. It is below 2³², see [`super::Bins::check`].
-#[inline(always)]
-pub(super) fn whole(x: f64) -> usize {
-    x.to_bits() as u32 as usize
-}
 
 /// The last sites, which are never read, plus [`ROUND`]: one for each lane, so that none waits for another.
 #[inline(always)]

@@ -4,7 +4,7 @@
 //! added as they are, modulo 2⁶⁴, and the contribution of 1.5·2⁵² is subtracted when the sums are read. Powers with too many digits
 //! for one word are split into two parts, which a fused multiply-add separates exactly.
 
-use super::axis::ROUND;
+use super::whole::ROUND;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 

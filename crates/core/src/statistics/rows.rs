@@ -1,6 +1,6 @@
 //! Sums over the impacts of each row: moments of ε and of E_rot/E_tot, created energy; those that pull; and how the particles ended.
 
-use super::histogram::{Bins, WHAT};
+use super::bins::{Bins, WHAT};
 use super::moments::{Moments, Sums};
 use super::recent::FRACTION_QUANTA;
 use crate::Error;

@@ -1,7 +1,9 @@
 //! A histogram as a list of integers. Parts of a run that were counted at different times or places are stored in this form, and merge to
 //! the same bits as the whole run.
 
-use super::histogram::{Bins, Histogram, WHAT};
+use super::bins::{Bins, WHAT};
+use super::histogram::Histogram;
+use super::moments::float;
 use crate::Error;
 use crate::memory::empty;
 
@@ -71,11 +73,4 @@ impl Histogram {
         visit(&mut rows.pulls);
         rows.stops.iter_mut().for_each(visit);
     }
-}
-
-/// Calls `visit` with the bits of a number.
-pub(super) fn float(number: &mut f64, visit: &mut impl FnMut(&mut u64)) {
-    let mut bits = number.to_bits();
-    visit(&mut bits);
-    *number = f64::from_bits(bits);
 }

@@ -5,20 +5,16 @@
 //! parallel. All stages of one group in a row would be a single chain of dependent operations.
 
 use super::collision::{Collisions, Dimension};
-use super::group::{Group, Lost, Release, Unconverged};
+use super::group::Group;
 use super::interleaved::{Idle, is_interleaved, work_up};
-use super::passes::SearchOn;
+use super::particles::{Lost, Release, Unconverged};
+use super::passes::{SearchOn, pass};
 use crate::law::{Law, Respond, Response};
 use crate::record::Meanwhile;
 use crate::shape::{Body, Hull, Surface, with_hull};
-use crate::simd::Pack;
-use crate::simd::elementary::sincos_in_lanes;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 use std::slice::{from_mut, from_ref};
-
-/// Vectors whose sines and cosines are computed side by side, with the registers to themselves.
-const WIDE: usize = 6;
 
 /// The motion of groups of particles from one impact to the next.
 pub(crate) trait Advance<S: Simd, T: Dimension> {
@@ -210,48 +206,6 @@ pub(crate) fn find<S: Simd, T: Dimension>(
         group.end_those_that_never_land();
     }
     Ok(())
-}
-
-/// A pass of the search.
-#[inline(always)]
-pub(super) fn pass<S: Simd, T: Dimension>(
-    groups: &mut [Group<S, T>],
-    hull: &impl Hull,
-    sink: &mut impl Meanwhile,
-) {
-    turn(groups, sink);
-    for (i, group) in groups.iter_mut().enumerate() {
-        group.evaluate(hull);
-        work_up::<S>(sink, i, 3);
-    }
-    for (i, group) in groups.iter_mut().enumerate() {
-        group.propose(hull);
-        work_up::<S>(sink, i, 4);
-    }
-    for (i, group) in groups.iter_mut().enumerate() {
-        group.predict(hull);
-        work_up::<S>(sink, i, 5);
-    }
-    for (i, group) in groups.iter_mut().enumerate() {
-        group.locate(hull);
-        work_up::<S>(sink, i, 6);
-    }
-}
-
-/// Computes sine and cosine of the angle turned through at the evaluation of each group.
-#[inline(always)]
-fn turn<S: Simd, T: Dimension>(groups: &mut [Group<S, T>], sink: &mut impl Meanwhile) {
-    for (first, chunk) in groups.chunks_mut(WIDE).enumerate() {
-        let mut angle = Pack::<S, WIDE>::splat(chunk[0].time.simd(), 0.0);
-        for (i, group) in chunk.iter().enumerate() {
-            angle.set_part(i, &group.angle());
-        }
-        let (sin, cos) = sincos_in_lanes(angle);
-        for (i, group) in chunk.iter_mut().enumerate() {
-            group.turned = (sin.part(i), cos.part(i));
-            work_up::<S>(sink, WIDE * first + i, 2);
-        }
-    }
 }
 
 impl<'a, 'b> General<'a, 'b> {

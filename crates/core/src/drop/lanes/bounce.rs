@@ -2,9 +2,10 @@
 
 use super::advance::Advance;
 use super::collision::{Collisions, Dimension};
-use super::group::{Group, Lost, Release};
+use super::group::Group;
 use super::impact::ImpactSink;
 use super::interleaved::of_groups;
+use super::particles::{Lost, Release};
 use crate::drop::stop::{Limits, StopReason};
 use crate::shape::Body;
 use crate::simd::Pack;

@@ -1,6 +1,6 @@
 //! The impact of a body: the contact that a law is applied to, (6)–(8), and the motion afterwards, (11).
 
-use super::group::GROUPS;
+use super::interleaved::GROUPS;
 use crate::law::{AxialCompliance, Components, Contact, Response};
 use crate::math::Vectors;
 use crate::motion::{

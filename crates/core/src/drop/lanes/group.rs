@@ -6,14 +6,13 @@ pub mod one_lane;
 
 use super::collision::{Collide, ContactPoint, Dimension};
 use super::impact::{Impact, ImpactSink, SymmetricPose};
-use super::particles::Particles;
-use crate::Fault;
+use super::particles::{Lost, Particles, Release, Unconverged};
 use crate::contact::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
 };
 use crate::drop::stop::{Limits, StopReason};
-use crate::law::{Contact, CustomLaw, MOST_CONTACTS, Response};
-use crate::motion::{Flight, State, SymmetricState};
+use crate::law::{Contact, CustomLaw, Response};
+use crate::motion::{Flight, SymmetricState};
 use crate::shape::{Body, Hull};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
@@ -25,44 +24,6 @@ type FlightOf<S, T> = <T as Dimension>::Flight<S>;
 pub(crate) type StateOf<S, T> = <FlightOf<S, T> as Flight<S, 1>>::State;
 /// Velocity and angular momentum of a group, which an impact changes.
 type MotionOf<S, T> = <StateOf<S, T> as SymmetricState<S, 1>>::Motion;
-
-/// Number of groups that alternate: enough to keep the arithmetic units busy, few enough to leave room in the first-level cache.
-pub(crate) const GROUPS: usize = 6;
-const _: () = assert!(GROUPS <= MOST_CONTACTS);
-
-/// The initial conditions of particles.
-pub(crate) trait Release {
-    /// The state of a particle of the run at its release.
-    fn start(&self, particle: usize) -> State;
-
-    /// The number in (0, 1) that ε_n is drawn with at an impact of a particle, counted from 0, where it scatters.
-    fn chance(&self, particle: usize, impact: usize) -> f64;
-}
-
-/// The particle whose contact search did not converge.
-#[derive(Debug)]
-pub(crate) struct Unconverged {
-    pub particle: usize,
-    pub impacts: usize,
-}
-
-/// The particle that cannot be followed: its contact search did not converge, or a law of one's own gave no impulse that is possible.
-#[derive(Debug)]
-pub(crate) struct Lost {
-    pub particle: usize,
-    pub impacts: usize,
-    pub fault: Option<Box<Fault>>,
-}
-
-impl From<Unconverged> for Lost {
-    fn from(Unconverged { particle, impacts }: Unconverged) -> Self {
-        Self {
-            particle,
-            impacts,
-            fault: None,
-        }
-    }
-}
 
 /// The flights of as many particles as a vector has lanes, and the search for their contacts: a lane whose contact is not located yet
 /// sits out the impacts of the others. Aligned to a cache line, so that no vector straddles two lines.

@@ -1,12 +1,14 @@
 //! An impact as the bounce loop reports it, and its receivers.
 
-use crate::drop::Bounces;
 use crate::math::Vectors;
 use crate::motion::SpatialState;
 use crate::record;
 use crate::shape::Body;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
+
+/// Particles that bounce on the plane: rows of impacts.
+pub(crate) struct Bounces;
 
 /// One impact in each lane, in the core's units: what statistics read, and the pose.
 pub(crate) struct Impact<S: Simd, P, const K: usize> {

@@ -13,9 +13,9 @@ mod passes;
 pub(super) use advance::{Advance, General, Inlined};
 pub(super) use bounce::bounce;
 pub(super) use collision::{Dimension, Planar, Spatial};
-pub(super) use group::GROUPS;
 #[cfg(feature = "one-lane")]
 pub use group::one_lane;
-pub(super) use group::{Lost, Release};
-pub(crate) use impact::{Impact, ImpactSink, Pose};
+pub(crate) use impact::{Bounces, Impact, ImpactSink, Pose};
+pub(super) use interleaved::GROUPS;
 pub(crate) use interleaved::{PLACES, of_group};
+pub(super) use particles::{Lost, Release};

@@ -1,11 +1,46 @@
 //! The particles of a group, one in each lane: which they are, how far they have come, and which have stopped.
 
-use super::group::{Release, Unconverged};
 use super::impact::ImpactSink;
+use crate::Fault;
 use crate::drop::stop::{COLLAPSE_RUN, StopReason, UNRESOLVED};
+use crate::motion::State;
 use crate::simd::{LANES, Mask, Pack};
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
+
+/// The initial conditions of particles.
+pub(crate) trait Release {
+    /// The state of a particle of the run at its release.
+    fn start(&self, particle: usize) -> State;
+
+    /// The number in (0, 1) that ε_n is drawn with at an impact of a particle, counted from 0, where it scatters.
+    fn chance(&self, particle: usize, impact: usize) -> f64;
+}
+
+/// The particle whose contact search did not converge.
+#[derive(Debug)]
+pub(crate) struct Unconverged {
+    pub particle: usize,
+    pub impacts: usize,
+}
+
+/// The particle that cannot be followed: its contact search did not converge, or a law of one's own gave no impulse that is possible.
+#[derive(Debug)]
+pub(crate) struct Lost {
+    pub particle: usize,
+    pub impacts: usize,
+    pub fault: Option<Box<Fault>>,
+}
+
+impl From<Unconverged> for Lost {
+    fn from(Unconverged { particle, impacts }: Unconverged) -> Self {
+        Self {
+            particle,
+            impacts,
+            fault: None,
+        }
+    }
+}
 
 /// As many particles as a vector has lanes.
 #[derive(Clone, Copy)]

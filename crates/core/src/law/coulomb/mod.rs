@@ -11,7 +11,9 @@ mod planar;
 mod slipping;
 mod turning;
 
-use super::{Components, Contact, Creation, LawKind, Response, Slip};
+use super::{
+    Compliant, Components, Contact, Creation, ImpulseRule, LawKind, Response, Slip, one_by_one,
+};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::simd::Pack;
@@ -103,33 +105,34 @@ impl Coulomb {
             hypothesis,
         })
     }
+}
 
-    /// Returns whether some contacts take much longer than others where they slip in any direction.
-    pub(super) fn takes_long(&self) -> bool {
-        self.friction > 0.0
-    }
-
-    /// The responses to contacts that may slip in any direction, μ > 0.
+impl ImpulseRule for Coulomb {
+    /// Where K is that of a body of revolution it does not slip along **w**.
     #[inline(always)]
-    pub(super) fn respond_in_space<S: Simd>(
+    fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contacts: &[Contact<Pack<S, 1>>],
-        restitution: &[Pack<S, 1>],
-        responses: &mut [Response<Pack<S, 1>>],
-    ) {
-        turning::respond(self, contacts, restitution, responses);
-    }
-
-    /// The response to a contact in each lane, which, where K is that of a body of revolution, does not slip along **w**.
-    #[inline(always)]
-    pub(super) fn respond<S: Simd, const SPACE: bool>(
-        &self,
-        contact: &Contact<Pack<S, 1>, impl Sliding<S>>,
+        contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
         restitution: Pack<S, 1>,
     ) -> Response<Pack<S, 1>> {
         contact
             .compliance
             .slide(self, contact.velocity, restitution)
+    }
+
+    /// In space the slip may turn, and some contacts take much longer than others: they share the lanes.
+    #[inline(always)]
+    fn respond_all<S: Simd, const SPACE: bool>(
+        &self,
+        contacts: &[Contact<Pack<S, 1>>],
+        restitution: &[Pack<S, 1>],
+        responses: &mut [Response<Pack<S, 1>>],
+    ) {
+        if SPACE && self.friction > 0.0 {
+            turning::respond(self, contacts, restitution, responses);
+        } else {
+            one_by_one::<S, SPACE>(self, contacts, restitution, responses);
+        }
     }
 }
 

@@ -36,7 +36,7 @@
 //! compressed again. There is no jam where the slip grows or sticks, because K is positive definite, so that each one ends.
 
 use super::{Coulomb, Hypothesis, Sliding, phases::Gain, phases::ImpactSoFar};
-use crate::law::{Compliance, Components, Contact, Frictionless, Response};
+use crate::law::{Compliance, Components, Contact, Frictionless, ImpulseRule, Response};
 use crate::math::nodal::{NODES, Nodal, QUADRATURE, dot, each, moments, rows};
 use crate::math::roots::{deflated, largest_root, zeros};
 use crate::simd::elementary::{ln, plain_exp as exp, rough_ln};

@@ -17,7 +17,7 @@ mod queue;
 mod tests;
 
 use super::{Coulomb, Hypothesis};
-use crate::law::{Compliant, Components, Contact, MOST_CONTACTS, Response};
+use crate::law::{Compliant, Components, Contact, ImpulseRule, MOST_CONTACTS, Response};
 use crate::simd::elementary::{exp_in_lanes, exp_m1_in_lanes, polynomial};
 use crate::simd::{Mask, Pack};
 use pulp::{Simd, WithSimd};

@@ -28,11 +28,13 @@ pub(crate) trait ConvexSurface: Sized {
     const LOOKS_BACK: bool = true;
 
     /// The number of parts.
+    #[inline(always)]
     fn parts(&self) -> usize {
         1
     }
 
     /// The largest distance of a point of a part from the centre of mass.
+    #[inline(always)]
     fn reach(&self, _part: usize) -> f64 {
         1.0
     }

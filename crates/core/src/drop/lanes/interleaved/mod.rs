@@ -17,11 +17,15 @@
 //! interleaving the impacts are settled as soon as all groups have reported them. Results do not depend on it, because integers are
 //! summed, in any order.
 
-use super::group::GROUPS;
+use crate::law::MOST_CONTACTS;
 use crate::record::Meanwhile;
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
 use std::ops::Range;
+
+/// Number of groups that alternate: enough to keep the arithmetic units busy, few enough to leave room in the first-level cache.
+pub(crate) const GROUPS: usize = 6;
+const _: () = assert!(GROUPS <= MOST_CONTACTS);
 
 /// Number of places.
 pub(crate) const PLACES: usize = GROUPS * LANES;
