@@ -13,8 +13,9 @@ mod spatial;
 mod state;
 
 pub(crate) use planar::{PlanarFlight, PlanarMotion, PlanarState};
-pub(crate) use spatial::{SpatialFlight, SpatialMotion, SpatialState};
+pub(crate) use spatial::SpatialFlight;
 pub use state::State;
+pub(crate) use state::{SpatialMotion, SpatialState};
 
 use crate::shape::{AxisMotion, Body};
 use crate::simd::elementary::moderate_sincos_in_lanes;

@@ -1,40 +1,13 @@
-//! SpatialMotion in three dimensions.
+//! Motion in three dimensions.
 //!
 //! With **p** = **Λ**/J_xx and Ω = |**p**| the axis is **e**(t) = **k** + (**e** − **k**) cos Ωt + (**p** × **e**)/Ω sin Ωt,
 //! where **k** = **p**(**p**·**e**)/Ω² and **e** is the axis at the start (3).
 
-use super::{Attitude, Flight, State, SymmetricState};
+use super::{Attitude, Flight, SpatialMotion, SpatialState, State, SymmetricState};
 use crate::math::Vectors;
 use crate::shape::{AxisMotion, Body};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
-
-/// Position and motion.
-#[derive(Clone, Copy)]
-pub(crate) struct SpatialState<S: Simd, const K: usize> {
-    pub height: Pack<S, K>,
-    /// Unit vector of the symmetry axis, from sphere 2 to sphere 1.
-    pub axis: Vectors<S, K>,
-    pub motion: SpatialMotion<S, K>,
-}
-
-/// v_G and **p** = **Λ**/J_xx.
-#[derive(Clone, Copy)]
-pub(crate) struct SpatialMotion<S: Simd, const K: usize> {
-    pub velocity: Vectors<S, K>,
-    pub precession: Vectors<S, K>,
-}
-
-impl<S: Simd, const K: usize> SpatialState<S, K> {
-    /// Angular velocity **ω** = Ĵ⁻¹**Λ**.
-    #[inline(always)]
-    pub fn spin(&self, body: &Body) -> Vectors<S, K> {
-        let axial = body.transverse / body.axial - 1.0;
-        let precession = self.motion.precession;
-        self.axis
-            .mul_add(axial * precession.dot(self.axis), precession)
-    }
-}
 
 impl<S: Simd, const K: usize> SymmetricState<S, K> for SpatialState<S, K> {
     type Motion = SpatialMotion<S, K>;

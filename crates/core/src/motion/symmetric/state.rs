@@ -1,10 +1,10 @@
-//! The state of one particle, in the core's units.
+//! The states of bodies in three dimensions, in the core's units: of one particle, and of one in each lane.
 
-use super::{SpatialMotion, SpatialState, SymmetricState};
+use super::SymmetricState;
 use crate::math::{Vector, Vectors};
 use crate::shape::{Body, Sphere};
-use crate::simd::{elementary, one};
-use pulp::Scalar;
+use crate::simd::{Pack, elementary, one};
+use pulp::{Scalar, Simd};
 
 /// Position and motion of one particle at its release, or just before or after an impact, in the core's units. The horizontal
 /// position is omitted, because the motion does not depend on it.
@@ -82,5 +82,32 @@ impl State {
                 precession: vector(self.precession),
             },
         }
+    }
+}
+
+/// Position and motion of a body in each lane, as [`State`].
+#[derive(Clone, Copy)]
+pub(crate) struct SpatialState<S: Simd, const K: usize> {
+    pub height: Pack<S, K>,
+    /// Unit vector of the symmetry axis, from sphere 2 to sphere 1.
+    pub axis: Vectors<S, K>,
+    pub motion: SpatialMotion<S, K>,
+}
+
+/// v_G and **p** = **Λ**/J_xx.
+#[derive(Clone, Copy)]
+pub(crate) struct SpatialMotion<S: Simd, const K: usize> {
+    pub velocity: Vectors<S, K>,
+    pub precession: Vectors<S, K>,
+}
+
+impl<S: Simd, const K: usize> SpatialState<S, K> {
+    /// Angular velocity **ω** = Ĵ⁻¹**Λ**.
+    #[inline(always)]
+    pub fn spin(&self, body: &Body) -> Vectors<S, K> {
+        let axial = body.transverse / body.axial - 1.0;
+        let precession = self.motion.precession;
+        self.axis
+            .mul_add(axial * precession.dot(self.axis), precession)
     }
 }
