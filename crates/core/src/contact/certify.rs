@@ -34,59 +34,40 @@ pub(super) trait Number:
     fn if_negative(self, first: Self, second: Self) -> Self;
 }
 
-impl Number for f64 {
-    #[inline(always)]
-    fn mul_plus(self, factor: Self, addend: Self) -> Self {
-        self * factor + addend
-    }
+macro_rules! number {
+    ([$($of:tt)*] $number:ty, $x:ident, $a:ident, $b:ident => $mul_plus:expr, $if_negative:expr) => {
+        impl $($of)* Number for $number {
+            #[inline(always)]
+            fn mul_plus(self, $a: Self, $b: Self) -> Self {
+                let $x = self;
+                $mul_plus
+            }
 
-    #[inline(always)]
-    fn root(self) -> Self {
-        self.sqrt()
-    }
+            #[inline(always)]
+            fn root(self) -> Self {
+                self.sqrt()
+            }
 
-    #[inline(always)]
-    fn size(self) -> Self {
-        self.abs()
-    }
+            #[inline(always)]
+            fn size(self) -> Self {
+                self.abs()
+            }
 
-    #[inline(always)]
-    fn at_least(self, other: f64) -> Self {
-        self.max(other)
-    }
+            #[inline(always)]
+            fn at_least(self, other: f64) -> Self {
+                self.max(other)
+            }
 
-    #[inline(always)]
-    fn if_negative(self, first: Self, second: Self) -> Self {
-        if self < 0.0 { first } else { second }
-    }
+            #[inline(always)]
+            fn if_negative(self, $a: Self, $b: Self) -> Self {
+                let $x = self;
+                $if_negative
+            }
+        }
+    };
 }
-
-impl<S: Simd, const K: usize> Number for Pack<S, K> {
-    #[inline(always)]
-    fn mul_plus(self, factor: Self, addend: Self) -> Self {
-        self.mul_add(factor, addend)
-    }
-
-    #[inline(always)]
-    fn root(self) -> Self {
-        self.sqrt()
-    }
-
-    #[inline(always)]
-    fn size(self) -> Self {
-        self.abs()
-    }
-
-    #[inline(always)]
-    fn at_least(self, other: f64) -> Self {
-        self.max(other)
-    }
-
-    #[inline(always)]
-    fn if_negative(self, first: Self, second: Self) -> Self {
-        self.lt(0.0).select(first, second)
-    }
-}
+number!([] f64, x, a, b => x * a + b, if x < 0.0 { a } else { b });
+number!([<S: Simd, const K: usize>] Pack<S, K>, x, a, b => x.mul_add(a, b), x.lt(0.0).select(a, b));
 
 /// √(f′² + 2Mf): the speed at which the parabola arrives at its zero.
 #[inline(always)]

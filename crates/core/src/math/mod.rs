@@ -1,6 +1,7 @@
 //! Vectors, of one particle or of one in each lane, symmetric matrices, rotations, zeros of polynomials, and functions by their values at the
 //! nodes of a quadrature.
 
+pub(crate) mod flat;
 pub(crate) mod nodal;
 mod quaternion;
 pub(crate) mod roots;

@@ -2,10 +2,11 @@
 
 use super::revolved::ProfileArc;
 use super::rigid::{CENTRE, Rigid, TENSOR};
-use super::surface::{Place, norm};
+use super::surface::Place;
 use super::{BodyKind, Form};
 use crate::Error;
 use crate::describe::{Arguments, Kind, Parameter};
+use crate::math::flat::norm;
 
 /// Its entry in the table of bodies.
 pub(super) const EGG: BodyKind = BodyKind::Rigid(Kind {
@@ -71,7 +72,7 @@ impl Rigid {
         // Of a sphere the arc can be all of it.
         let towards = |[a, b]: Place, pole: Place| {
             let (x, y) = (a - centre[0], b - centre[1]);
-            let size = norm(x, y);
+            let size = norm([x, y]);
             if size > 0.0 {
                 [x / size, y / size]
             } else {

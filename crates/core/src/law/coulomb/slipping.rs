@@ -37,6 +37,7 @@
 
 use super::{Coulomb, Hypothesis, Sliding, phases::Gain, phases::ImpactSoFar};
 use crate::law::{Compliance, Components, Contact, Frictionless, ImpulseRule, Response};
+use crate::math::flat::{cross, norm, rotate, rotate_back, scalar};
 use crate::math::nodal::{NODES, Nodal, QUADRATURE, dot, each, moments, rows};
 use crate::math::roots::{deflated, largest_root, zeros};
 use crate::simd::elementary::{ln, plain_exp as exp, rough_ln};
@@ -116,28 +117,6 @@ impl Sliding<Scalar> for Compliance {
 /// The largest power of two that is not larger, of a positive number.
 fn power_of_two(x: f64) -> f64 {
     f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & (0x7ff << 52))
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-fn scalar(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-fn norm(a: [f64; 2]) -> f64 {
-    scalar(a, a).sqrt()
-}
-
-/// The components of v in axes of which the first is turned to this direction.
-fn rotate(axis: [f64; 2], v: [f64; 2]) -> [f64; 2] {
-    [scalar(axis, v), cross(axis, v)]
-}
-
-/// The vector that has these components there.
-fn rotate_back(axis: [f64; 2], v: [f64; 2]) -> [f64; 2] {
-    rotate([axis[0], -axis[1]], v)
 }
 
 /// K and μ in the principal axes of K_t.

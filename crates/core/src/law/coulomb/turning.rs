@@ -14,6 +14,7 @@
 
 mod queue;
 #[cfg(test)]
+#[path = "../../../tests/turning/parts.rs"]
 mod tests;
 
 use super::{Coulomb, Hypothesis};

@@ -2,6 +2,7 @@
 
 use super::support::{Length, NormalMotion, Support};
 use super::{ConvexSurface, Piece};
+use crate::math::flat::norm;
 use crate::math::{Quaternion, Vector};
 
 /// A point (z, r) of a half-plane through the axis.
@@ -20,11 +21,6 @@ pub(crate) struct Band {
     pub reach: f64,
 }
 
-/// The length of a vector with these components. That of the platform's library has another last bit on another platform.
-pub(crate) fn norm(a: f64, b: f64) -> f64 {
-    (a * a + b * b).sqrt()
-}
-
 /// Of what the support of a band is the sum, for a direction **u**: of z u_z, r |u_⊥| and ϱ|**u**|.
 type Weights = [f64; 3];
 
@@ -37,7 +33,7 @@ impl Band {
             reach: 0.0,
         };
         let [z, r] = centre;
-        let distance = norm(z, r);
+        let distance = norm([z, r]);
         // The farthest point of the arc is on the line through the centre of mass and its centre, or an end.
         band.reach = if distance > 0.0 {
             let [a, b, c] = band.weights(z / distance, r / distance);
@@ -46,7 +42,7 @@ impl Band {
             radius
         };
         for [a, b] in ends {
-            band.reach = band.reach.max(norm(z + radius * a, r + radius * b));
+            band.reach = band.reach.max(norm([z + radius * a, r + radius * b]));
         }
         band
     }

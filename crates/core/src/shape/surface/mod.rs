@@ -6,7 +6,6 @@ mod ellipsoid;
 mod superellipsoid;
 mod support;
 
-pub(super) use bands::norm;
 pub(crate) use bands::{Band, Bands, Place};
 pub(crate) use ellipsoid::EllipsoidSurface;
 pub(crate) use superellipsoid::Superellipsoid;
