@@ -25,6 +25,44 @@ use pulp::{Simd, WithSimd};
 use queue::Pending;
 use std::f64::consts::PI;
 
+/// Makes a struct of numbers, truth values and what all lanes share, and what takes some of its lanes from another one.
+macro_rules! in_lanes {
+    (
+        $(#[$about:meta])* struct $name:ident {
+            $($(#[$text:meta])* $number:ident,)*
+            $(; masks: $($(#[$note:meta])* $mask:ident,)*)?
+            $(; shared: $($(#[$said:meta])* $shared:ident: $kind:ty,)*)?
+        }
+    ) => {
+        $(#[$about])*
+        #[derive(Clone, Copy)]
+        struct $name<S: Simd, const K: usize> {
+            $($(#[$text])* pub $number: Pack<S, K>,)*
+            $($($(#[$note])* pub $mask: Mask<S, K>,)*)?
+            $($($(#[$said])* pub $shared: $kind,)*)?
+        }
+
+        impl<S: Simd, const K: usize> $name<S, K> {
+            /// Lane by lane one or the other.
+            #[inline(always)]
+            pub fn choose(lanes: Mask<S, K>, a: &Self, b: &Self) -> Self {
+                Self {
+                    $($number: lanes.select(a.$number, b.$number),)*
+                    $($($mask: lanes & a.$mask | !lanes & b.$mask,)*)?
+                    $($($shared: b.$shared,)*)?
+                }
+            }
+
+            /// Puts lane k of another one into a lane.
+            #[inline(always)]
+            pub fn put(&mut self, lane: usize, other: &Self, k: usize) {
+                $(self.$number.as_mut_slice()[lane] = other.$number.as_slice()[k];)*
+                $($(self.$mask.set(lane, other.$mask.get(k));)*)?
+            }
+        }
+    };
+}
+
 /// A contact, and what of it enters Coulomb's law.
 #[derive(Clone, Copy)]
 struct Slipping<S: Simd, const K: usize> {
@@ -64,23 +102,25 @@ impl<S: Simd> Slipping<S, 1> {
 // K, in the frame of the slip, with friction.
 // ========================================================================================================
 
-/// K in the plane of **n** and the direction **u** along which the slip is positive, times μ where friction is.
-#[derive(Clone, Copy)]
-struct Rates<S: Simd, const K: usize> {
-    pub friction: f64,
-    pub nn: Pack<S, K>,
-    pub nu: Pack<S, K>,
-    pub uu: Pack<S, K>,
-    pub ww: Pack<S, K>,
-    /// K_nn − K_nu²/K_uu.
-    pub sticking: Pack<S, K>,
-    /// μK_ww.
-    pub brake: Pack<S, K>,
-    /// ρ₊, ρ₋, λ, κ.
-    pub plus: Pack<S, K>,
-    pub minus: Pack<S, K>,
-    pub decay: Pack<S, K>,
-    pub kappa: Pack<S, K>,
+in_lanes! {
+    /// K in the plane of **n** and the direction **u** along which the slip is positive, times μ where friction is.
+    struct Rates {
+        nn,
+        nu,
+        uu,
+        ww,
+        /// K_nn − K_nu²/K_uu.
+        sticking,
+        /// μK_ww.
+        brake,
+        /// ρ₊, ρ₋, λ, κ.
+        plus,
+        minus,
+        decay,
+        kappa,
+        ; shared:
+        friction: f64,
+    }
 }
 
 impl<S: Simd, const K: usize> Rates<S, K> {
@@ -151,47 +191,51 @@ impl<S: Simd, const K: usize> Rates<S, K> {
 /// Slip at which it counts as vanished, relative to the contact velocity; the impulse is of the order of that.
 const VANISHED: f64 = 1.0 / 18_014_398_509_481_984.0; // 2⁻⁵⁴
 
-/// The state of the impacts in progress.
-#[derive(Clone, Copy)]
-struct Course<S: Simd, const K: usize> {
-    /// Slip u and w ≥ 0, |**s**|, A, y.
-    pub u: Pack<S, K>,
-    pub w: Pack<S, K>,
-    pub slip: Pack<S, K>,
-    pub a: Pack<S, K>,
-    pub y: Pack<S, K>,
-    /// ±1: whether **u** is that of the contact.
-    pub mirror: Pack<S, K>,
-    /// v_c^n.
-    pub v: Pack<S, K>,
-    /// Impulse so far.
-    pub normal: Pack<S, K>,
-    pub along: Pack<S, K>,
-    pub across: Pack<S, K>,
-    /// Work of the normal force since the beginning or the last end of a compression.
-    pub work: Pack<S, K>,
-    /// Before the end of the compression, which in a jam may come more than once.
-    pub compressing: Mask<S, K>,
-    /// Impulse at its last end, and work of the normal force until then.
-    pub compression: Pack<S, K>,
-    pub balance: Pack<S, K>,
-    /// The most work that was taken so far, and the work that the restitution is to give back.
-    pub taken: Pack<S, K>,
-    pub due: Pack<S, K>,
-    pub over: Mask<S, K>,
-    /// Most by which to go on: a longer step was too long.
-    pub limit: Pack<S, K>,
+in_lanes! {
+    /// The state of the impacts in progress.
+    struct Course {
+        /// Slip u and w ≥ 0, |**s**|, A, y.
+        u,
+        w,
+        slip,
+        a,
+        y,
+        /// ±1: whether **u** is that of the contact.
+        mirror,
+        /// v_c^n.
+        v,
+        /// Impulse so far.
+        normal,
+        along,
+        across,
+        /// Work of the normal force since the beginning or the last end of a compression.
+        work,
+        /// Impulse at its last end, and work of the normal force until then.
+        compression,
+        balance,
+        /// The most work that was taken so far, and the work that the restitution is to give back.
+        taken,
+        due,
+        /// Most by which to go on: a longer step was too long.
+        limit,
+        ; masks:
+        /// Before the end of the compression, which in a jam may come more than once.
+        compressing,
+        over,
+    }
 }
 
-/// The condition that ends the restitution.
-#[derive(Clone, Copy)]
-struct Goal<S: Simd, const K: usize> {
-    pub hypothesis: Hypothesis,
-    pub restitution: Pack<S, K>,
-    /// |v_c^n| before the impact.
-    pub approach: Pack<S, K>,
-    /// ε_n|v_c^n|, Newton's goal.
-    pub rebound: Pack<S, K>,
+in_lanes! {
+    /// The condition that ends the restitution.
+    struct Goal {
+        restitution,
+        /// |v_c^n| before the impact.
+        approach,
+        /// ε_n|v_c^n|, Newton's goal.
+        rebound,
+        ; shared:
+        hypothesis: Hypothesis,
+    }
 }
 
 impl<S: Simd, const K: usize> Goal<S, K> {
@@ -209,31 +253,6 @@ impl<S: Simd, const K: usize> Goal<S, K> {
 }
 
 impl<S: Simd, const K: usize> Course<S, K> {
-    /// Lane by lane one or the other.
-    #[inline(always)]
-    pub fn choose(mask: Mask<S, K>, a: &Self, b: &Self) -> Self {
-        Self {
-            u: mask.select(a.u, b.u),
-            w: mask.select(a.w, b.w),
-            slip: mask.select(a.slip, b.slip),
-            a: mask.select(a.a, b.a),
-            y: mask.select(a.y, b.y),
-            mirror: mask.select(a.mirror, b.mirror),
-            v: mask.select(a.v, b.v),
-            normal: mask.select(a.normal, b.normal),
-            along: mask.select(a.along, b.along),
-            across: mask.select(a.across, b.across),
-            work: mask.select(a.work, b.work),
-            compressing: mask & a.compressing | !mask & b.compressing,
-            compression: mask.select(a.compression, b.compression),
-            balance: mask.select(a.balance, b.balance),
-            taken: mask.select(a.taken, b.taken),
-            due: mask.select(a.due, b.due),
-            over: mask & a.over | !mask & b.over,
-            limit: mask.select(a.limit, b.limit),
-        }
-    }
-
     /// |**s**|, A and y from u and w.
     #[inline(always)]
     pub fn direction(&mut self) {
@@ -1661,20 +1680,28 @@ const ROUND: f64 = 1.0 / 4.0;
 /// Panels after which the slip is taken to have vanished.
 const MOST_PANELS: f64 = 1000.0;
 
+in_lanes! {
+    /// What an impact needs besides its course.
+    struct Origin {
+        /// Panels so far.
+        panels,
+        /// The unit of the velocities.
+        scale,
+        ; masks:
+        /// By symmetry such a slip does not turn.
+        aside,
+        /// On which side **w** is.
+        left,
+    }
+}
+
 /// Impacts under way, one in each lane.
 #[derive(Clone, Copy)]
 struct OngoingImpacts<S: Simd> {
     rates: Rates<S, 1>,
     goal: Goal<S, 1>,
     course: Course<S, 1>,
-    /// Panels so far.
-    panels: Pack<S, 1>,
-    /// The unit of the velocities.
-    scale: Pack<S, 1>,
-    /// By symmetry such a slip does not turn.
-    aside: Mask<S, 1>,
-    /// On which side **w** is.
-    left: Mask<S, 1>,
+    origin: Origin<S, 1>,
 }
 
 impl<S: Simd> OngoingImpacts<S> {
@@ -1720,10 +1747,12 @@ impl<S: Simd> OngoingImpacts<S> {
                 rebound: contact.restitution * contact.speed * unit,
             },
             course,
-            panels: zero,
-            scale,
-            aside: along.eq(0.0) & contact.nu.eq(0.0),
-            left: across.lt(0.0),
+            origin: Origin {
+                panels: zero,
+                scale,
+                aside: along.eq(0.0) & contact.nu.eq(0.0),
+                left: across.lt(0.0),
+            },
         }
     }
 
@@ -1734,8 +1763,7 @@ impl<S: Simd> OngoingImpacts<S> {
             rates,
             goal,
             course,
-            panels,
-            ..
+            origin,
         } = self;
         // **u** along the slip, or the way that K_nu drives it.
         let back = course.u.lt(0.0) | course.u.eq(0.0) & rates.nu.lt(0.0);
@@ -1752,7 +1780,7 @@ impl<S: Simd> OngoingImpacts<S> {
         // What is left is a straight line in p where the slip has vanished, or goes on along **u** for ever.
         let straight = course.w.le(VANISHED) & rates.decay.le(0.0) & course.y.lt(1.0);
         let straight = straight & !course.is_late(goal);
-        let vanished = course.slip.le(VANISHED) | straight | !panels.lt(MOST_PANELS);
+        let vanished = course.slip.le(VANISHED) | straight | !origin.panels.lt(MOST_PANELS);
         let stop = VanishingSlip::new(rates, course);
         let candidates = (stop.reached | vanished) & !course.over;
         if candidates.any() {
@@ -1761,7 +1789,7 @@ impl<S: Simd> OngoingImpacts<S> {
             let last = stops & candidates;
             let mut end = Course::choose(vanished, course, &stopped);
             end.finish(rates, goal);
-            end.over = Mask::splat(panels.simd(), true);
+            end.over = Mask::splat(origin.panels.simd(), true);
             *course = Course::choose(last, &end, course);
         }
     }
@@ -1817,78 +1845,23 @@ impl<S: Simd> OngoingImpacts<S> {
         again.limit = limit;
         let next = Course::choose(back, &again, &next);
         *course = Course::choose(course.over, course, &next);
-        self.panels = self.panels + 1.0;
-    }
-
-    /// All numbers of them.
-    #[inline(always)]
-    fn packs(&mut self) -> [&mut Pack<S, 1>; 31] {
-        let Self {
-            rates: r,
-            goal: g,
-            course: c,
-            panels,
-            scale,
-            ..
-        } = self;
-        [
-            &mut r.nn,
-            &mut r.nu,
-            &mut r.uu,
-            &mut r.ww,
-            &mut r.sticking,
-            &mut r.brake,
-            &mut r.plus,
-            &mut r.minus,
-            &mut r.decay,
-            &mut r.kappa,
-            &mut g.restitution,
-            &mut g.approach,
-            &mut g.rebound,
-            &mut c.u,
-            &mut c.w,
-            &mut c.slip,
-            &mut c.a,
-            &mut c.y,
-            &mut c.mirror,
-            &mut c.v,
-            &mut c.normal,
-            &mut c.along,
-            &mut c.across,
-            &mut c.work,
-            &mut c.compression,
-            &mut c.balance,
-            &mut c.taken,
-            &mut c.due,
-            &mut c.limit,
-            panels,
-            scale,
-        ]
-    }
-
-    /// All that is either so or not.
-    #[inline(always)]
-    fn masks(&mut self) -> [&mut Mask<S, 1>; 4] {
-        let course = &mut self.course;
-        [
-            &mut course.compressing,
-            &mut course.over,
-            &mut self.aside,
-            &mut self.left,
-        ]
+        self.origin.panels = self.origin.panels + 1.0;
     }
 
     /// The answers to those that are over.
     #[inline(always)]
     fn answer(&self) -> Response<Pack<S, 1>> {
-        let (course, scale) = (&self.course, self.scale);
+        let (course, origin) = (&self.course, &self.origin);
+        let scale = origin.scale;
         // A plastic contact is not left: rounding must not end its stay.
         let plastic = self.goal.restitution.eq(0.0);
         Response {
             impulse: Components {
                 normal: course.normal * scale,
-                along: self.aside.select(0.0, course.along * course.mirror * scale),
-                across: self.left.select(-course.across, course.across) * scale,
+                along: origin
+                    .aside
+                    .select(0.0, course.along * course.mirror * scale),
+                across: origin.left.select(-course.across, course.across) * scale,
             },
             separation_speed: plastic.select(0.0, course.v.max(0.0)) * scale,
         }

@@ -1,8 +1,8 @@
 //! Contacts that take more than one step, out of many vectors: they wait in a queue for a lane, so that no lane is idle while others
 //! are under way. Those whose direction hardly turns any more go on in lanes of their own, where all take the same steps.
 
-use super::{OngoingImpacts, Slipping};
-use crate::law::{Hypothesis, Response};
+use super::{Course, Goal, OngoingImpacts, Origin, Rates, Slipping};
+use crate::law::{Contact, Hypothesis, Response};
 use crate::simd::{LANES, Mask, Pack};
 use pulp::{Simd, WithSimd};
 
@@ -56,17 +56,7 @@ impl<S: Simd> Slipping<S, 1> {
     /// No contact.
     #[inline(always)]
     fn none(simd: S) -> Self {
-        let zero = Pack::splat(simd, 0.0);
-        Self {
-            speed: zero,
-            along: zero,
-            across: zero,
-            nn: zero,
-            nu: zero,
-            uu: zero,
-            ww: zero,
-            restitution: zero,
-        }
+        Self::new(&Contact::none(simd), Pack::splat(simd, 0.0))
     }
 
     /// Puts lane k of another one into a lane.
@@ -90,24 +80,22 @@ impl<S: Simd> Slipping<S, 1> {
 impl<S: Simd> OngoingImpacts<S> {
     /// Puts lane k of others into a lane.
     #[inline(always)]
-    fn put(&mut self, lane: usize, others: &mut Self, k: usize) {
-        for (to, from) in self.packs().into_iter().zip(others.packs()) {
-            to.as_mut_slice()[lane] = from.as_slice()[k];
-        }
-        for (to, from) in self.masks().into_iter().zip(others.masks()) {
-            to.set(lane, from.get(k));
-        }
+    fn put(&mut self, lane: usize, others: &Self, k: usize) {
+        self.rates.put(lane, &others.rates, k);
+        self.goal.put(lane, &others.goal, k);
+        self.course.put(lane, &others.course, k);
+        self.origin.put(lane, &others.origin, k);
     }
 
     /// Takes others in the lanes of the mask.
     #[inline(always)]
-    fn take(&mut self, mask: Mask<S, 1>, others: &mut Self) {
-        for (to, from) in self.packs().into_iter().zip(others.packs()) {
-            *to = mask.select(*from, *to);
-        }
-        for (to, from) in self.masks().into_iter().zip(others.masks()) {
-            *to = mask & *from | !mask & *to;
-        }
+    fn take(&mut self, mask: Mask<S, 1>, others: &Self) {
+        *self = Self {
+            rates: Rates::choose(mask, &others.rates, &self.rates),
+            goal: Goal::choose(mask, &others.goal, &self.goal),
+            course: Course::choose(mask, &others.course, &self.course),
+            origin: Origin::choose(mask, &others.origin, &self.origin),
+        };
     }
 }
 
@@ -157,8 +145,8 @@ impl<S: Simd> TurningLanes<S> {
             any = true;
         }
         if any {
-            let mut new = OngoingImpacts::new(&fresh, self.friction, self.hypothesis);
-            self.impacts.take(taken.eq(1.0), &mut new);
+            let new = OngoingImpacts::new(&fresh, self.friction, self.hypothesis);
+            self.impacts.take(taken.eq(1.0), &new);
         }
     }
 
@@ -196,7 +184,7 @@ impl<S: Simd> TurningLanes<S> {
             let free = others.places.iter().position(Option::is_none);
             let free = free.expect("contacts that are finished leave their lanes");
             others.places[free] = self.places[lane].take();
-            others.impacts.put(free, &mut self.impacts, lane);
+            others.impacts.put(free, &self.impacts, lane);
         });
         self.impacts.course.over = self.impacts.course.over | straight;
     }
