@@ -137,22 +137,9 @@ class Mixture:
         edges: npt.NDArray[np.float64],
         cumulative: npt.NDArray[np.float64],
     ) -> None: ...
-    def cdf(
+    def value(
         self,
-        x: npt.NDArray[np.float64],
-        v: npt.NDArray[np.float64],
-        z: npt.NDArray[np.float64],
-        threads: int,
-    ) -> tuple[npt.NDArray[np.float64], KeyboardInterrupt | None]: ...
-    def pdf(
-        self,
-        x: npt.NDArray[np.float64],
-        v: npt.NDArray[np.float64],
-        z: npt.NDArray[np.float64],
-        threads: int,
-    ) -> tuple[npt.NDArray[np.float64], KeyboardInterrupt | None]: ...
-    def ppf(
-        self,
+        what: str,
         x: npt.NDArray[np.float64],
         v: npt.NDArray[np.float64],
         z: npt.NDArray[np.float64],

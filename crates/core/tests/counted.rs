@@ -3,7 +3,7 @@
 use crate::common::cases;
 use proptest::prelude::*;
 use restitution_core::distribution::{
-    At, Broadcast, COARSE, Counter, FINE, Impacts, Layout, Levels, Mixture, Nodes,
+    At, Broadcast, COARSE, Counter, Curve, FINE, Impacts, Layout, Levels, Mixture, Nodes,
 };
 use restitution_core::{Error, Level, Monitor, Resources};
 
@@ -163,7 +163,7 @@ proptest! {
                 condition: Broadcast::new(&[0.0], "z", 1).unwrap(),
             };
             let x = Broadcast::new(&x, "x", 1).unwrap();
-            mixture.cdf(x, at, &mut u, on(1), &Monitor::default()).unwrap();
+            mixture.evaluate(Curve::Cdf, x, at, &mut u, on(1), &Monitor::default()).unwrap();
             let interval = SPEEDS.iter().position(|&node| node > v).unwrap() - 1;
             let share = |parts: usize| ((u[0] * parts as f64).floor() as usize).min(parts - 1);
             expected[interval * FINE + share(FINE)] += 1;

@@ -2,7 +2,7 @@
 
 use crate::common::cases;
 use proptest::prelude::*;
-use restitution_core::distribution::{At, Broadcast, Layout, Mixture, Nodes, values};
+use restitution_core::distribution::{At, Broadcast, Curve, Layout, Mixture, Nodes, values};
 use restitution_core::{Error, Level, Monitor, Resources};
 
 /// Histograms at increasing speeds, each with as many conditions as it has entries in `conditions`.
@@ -31,19 +31,16 @@ impl Table {
         })
     }
 
-    fn ask(&self, what: Question, x: &[f64], v: f64, z: f64) -> Vec<f64> {
+    fn ask(&self, what: Curve, x: &[f64], v: f64, z: f64) -> Vec<f64> {
         let mixture = self.mixture().unwrap();
         let mut out = vec![0.0; x.len()];
         let (v, z) = ([v], [z]);
         let at = at(&v, &z, x.len());
         let x = Broadcast::new(x, "x", x.len()).unwrap();
         let monitor = Monitor::default();
-        match what {
-            Question::Cdf => mixture.cdf(x, at, &mut out, on(1), &monitor),
-            Question::Pdf => mixture.pdf(x, at, &mut out, on(1), &monitor),
-            Question::Ppf => mixture.ppf(x, at, &mut out, on(1), &monitor),
-        }
-        .unwrap();
+        mixture
+            .evaluate(what, x, at, &mut out, on(1), &monitor)
+            .unwrap();
         out
     }
 
@@ -56,13 +53,6 @@ impl Table {
             .unwrap();
         out
     }
-}
-
-#[derive(Clone, Copy)]
-enum Question {
-    Cdf,
-    Pdf,
-    Ppf,
 }
 
 fn at<'a>(v: &'a [f64], z: &'a [f64], size: usize) -> At<'a> {
@@ -139,18 +129,18 @@ proptest! {
     /// F rises from 0 to 1, its quantiles invert it, and the density is its slope.
     #[test]
     fn the_functions_belong_together(table in table(), v in 0.0..6.0_f64, z in -1.0..4.0_f64, q in 0.0..1.0_f64) {
-        let ends = table.ask(Question::Ppf, &[0.0, 1.0], v, z);
-        prop_assert_eq!(table.ask(Question::Cdf, &ends, v, z), vec![0.0, 1.0]);
-        let x = table.ask(Question::Ppf, &[q], v, z)[0];
+        let ends = table.ask(Curve::Ppf, &[0.0, 1.0], v, z);
+        prop_assert_eq!(table.ask(Curve::Cdf, &ends, v, z), vec![0.0, 1.0]);
+        let x = table.ask(Curve::Ppf, &[q], v, z)[0];
         prop_assert!(ends[0] <= x && x <= ends[1]);
-        let back = table.ask(Question::Cdf, &[x], v, z)[0];
+        let back = table.ask(Curve::Cdf, &[x], v, z)[0];
         prop_assert!((back - q).abs() < 1e-13, "{} for {}", back, q);
         // The slope is constant between two edges; a step that crosses none of them measures it.
         let h = 1e-6;
         let nearest = table.edges.iter().map(|edge| (edge - x).abs()).fold(f64::INFINITY, f64::min);
         if nearest > h {
-            let f = table.ask(Question::Cdf, &[x - h, x + h], v, z);
-            let density = table.ask(Question::Pdf, &[x], v, z)[0];
+            let f = table.ask(Curve::Cdf, &[x - h, x + h], v, z);
+            let density = table.ask(Curve::Pdf, &[x], v, z)[0];
             prop_assert!(((f[1] - f[0]) / (2.0 * h) - density).abs() < 1e-8 * (1.0 + density));
         }
     }
@@ -162,7 +152,7 @@ proptest! {
         for (node, v) in [(0, 0.0), (0, table.speeds[0]), (last, table.speeds[last]), (last, 1e9)] {
             let component = table.first[node] as usize;
             let range = table.start[component] as usize..table.start[component + 1] as usize;
-            let x = table.ask(Question::Ppf, &[q], v, -1.0)[0];
+            let x = table.ask(Curve::Ppf, &[q], v, -1.0)[0];
             let (edges, below) = (&table.edges[range.clone()], &table.cumulative[range]);
             let bin = below.partition_point(|&p| p <= q) - 1;
             let slope = (edges[bin + 1] - edges[bin]) / (below[bin + 1] - below[bin]);
@@ -175,7 +165,7 @@ proptest! {
     fn draws_follow_the_distribution(table in table(), v in 0.0..6.0_f64, z in -1.0..4.0_f64) {
         let mut x = table.draw(&[v], &[z], 4000, 1);
         x.sort_by(f64::total_cmp);
-        let f = table.ask(Question::Cdf, &x, v, z);
+        let f = table.ask(Curve::Cdf, &x, v, z);
         let distance = f.iter().enumerate().map(|(i, f)| (f - i as f64 / 4000.0).abs()).fold(0.0, f64::max);
         prop_assert!(distance < 3.7 / 4000_f64.sqrt() + 1.0 / 4000.0, "{}", distance);
     }
@@ -230,21 +220,14 @@ fn every_element_has_its_own_arguments() {
     let monitor = Monitor::default();
     let values = Broadcast::new(&x, "x", size).unwrap();
     let mut out = [(); 3].map(|()| vec![0.0; size]);
-    let [cdf, pdf, ppf] = &mut out;
-    mixture
-        .cdf(values, at(&v, &z, size), cdf, on(2), &monitor)
-        .unwrap();
-    mixture
-        .pdf(values, at(&v, &z, size), pdf, on(2), &monitor)
-        .unwrap();
-    mixture
-        .ppf(values, at(&v, &z, size), ppf, on(2), &monitor)
-        .unwrap();
+    let curves = [Curve::Cdf, Curve::Pdf, Curve::Ppf];
+    for (out, curve) in out.iter_mut().zip(curves) {
+        let at = at(&v, &z, size);
+        let done = mixture.evaluate(curve, values, at, out, on(2), &monitor);
+        done.unwrap();
+    }
     for i in (0..size).step_by(487) {
-        for (out, what) in out
-            .iter()
-            .zip([Question::Cdf, Question::Pdf, Question::Ppf])
-        {
+        for (out, what) in out.iter().zip(curves) {
             assert_eq!(out[i], table.ask(what, &x[i..=i], v[i], z[i])[0], "{i}");
         }
     }
@@ -268,7 +251,7 @@ fn a_quantile_is_the_least_number() {
     table.start = vec![0, 5, 7, 10];
     table.edges.splice(0..3, [-0.5, 0.5, 1.0, 1.5, 2.0]);
     table.cumulative.splice(0..3, [0.0, 0.25, 0.25, 0.75, 1.0]);
-    let quantiles = table.ask(Question::Ppf, &[0.0, 0.25, 0.5, 0.75, 1.0], 0.1, 0.0);
+    let quantiles = table.ask(Curve::Ppf, &[0.0, 0.25, 0.5, 0.75, 1.0], 0.1, 0.0);
     assert_eq!(quantiles, [-0.5, 0.5, 1.25, 1.5, 2.0]);
 }
 
@@ -285,11 +268,11 @@ fn what_is_not_a_number_gives_none() {
     assert!(table.draw(&[f64::NAN], &[0.0], 1, 1)[0].is_nan());
     assert!(
         table
-            .ask(Question::Ppf, &[-0.1, 1.1, f64::NAN], 0.2, 0.3)
+            .ask(Curve::Ppf, &[-0.1, 1.1, f64::NAN], 0.2, 0.3)
             .iter()
             .all(|x| x.is_nan())
     );
-    for what in [Question::Cdf, Question::Pdf, Question::Ppf] {
+    for what in [Curve::Cdf, Curve::Pdf, Curve::Ppf] {
         for (x, v, z) in [
             (f64::NAN, 0.2, 0.3),
             (0.5, f64::NAN, 0.3),

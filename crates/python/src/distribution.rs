@@ -4,7 +4,7 @@ use crate::errors::python_error;
 use crate::{resources, watch};
 use numpy::{Element, IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use restitution_core::distribution::{At, BLOCK, Broadcast, Layout, Nodes};
+use restitution_core::distribution::{At, BLOCK, Broadcast, Curve, Layout, Nodes};
 use restitution_core::{Error, Monitor, Resources, copied};
 
 /// The table of a distribution.
@@ -29,16 +29,6 @@ pub(crate) fn nodes(
 pub(crate) fn owned<T: Element + Copy>(values: &PyReadonlyArray1<'_, T>) -> PyResult<Vec<T>> {
     copied("table", values.as_slice()?).map_err(python_error)
 }
-
-/// A function of the table that is evaluated at many points.
-type Function = fn(
-    &restitution_core::distribution::Mixture,
-    Broadcast<'_>,
-    At<'_>,
-    &mut [f64],
-    Resources,
-    &Monitor,
-) -> Result<(), Error>;
 
 impl Mixture {
     /// Fills `size` values at speeds and conditions.
@@ -68,27 +58,6 @@ impl Mixture {
         };
         Ok((out.into_pyarray(py), interrupted))
     }
-
-    fn value<'py>(
-        &self,
-        py: Python<'py>,
-        function: Function,
-        x: &Array<'py>,
-        at: (&Array<'py>, &Array<'py>),
-        threads: usize,
-    ) -> PyResult<Filled<'py>> {
-        let x = x.as_slice()?;
-        self.fill(py, at, (x.len(), threads), |at, out, resources, monitor| {
-            function(
-                &self.0,
-                Broadcast::new(x, "x", x.len())?,
-                at,
-                out,
-                resources,
-                monitor,
-            )
-        })
-    }
 }
 
 #[pymethods]
@@ -113,43 +82,23 @@ impl Mixture {
         mixture.map(Self).map_err(python_error)
     }
 
-    /// Cumulative distribution function at x, for impact velocities v in m/s and conditions z, of the size of x or of size 1.
-    fn cdf<'py>(
+    /// "cdf", "pdf" or, of probabilities, "ppf" at x, for impact velocities v in m/s and conditions z, of the size of x or of size 1.
+    fn value<'py>(
         &self,
         py: Python<'py>,
+        what: &str,
         x: Array<'py>,
         v: Array<'py>,
         z: Array<'py>,
         threads: usize,
     ) -> PyResult<Filled<'py>> {
-        let function = restitution_core::distribution::Mixture::cdf;
-        self.value(py, function, &x, (&v, &z), threads)
-    }
-
-    /// Probability density at x, likewise.
-    fn pdf<'py>(
-        &self,
-        py: Python<'py>,
-        x: Array<'py>,
-        v: Array<'py>,
-        z: Array<'py>,
-        threads: usize,
-    ) -> PyResult<Filled<'py>> {
-        let function = restitution_core::distribution::Mixture::pdf;
-        self.value(py, function, &x, (&v, &z), threads)
-    }
-
-    /// Quantiles of the probabilities x, likewise.
-    fn ppf<'py>(
-        &self,
-        py: Python<'py>,
-        x: Array<'py>,
-        v: Array<'py>,
-        z: Array<'py>,
-        threads: usize,
-    ) -> PyResult<Filled<'py>> {
-        let function = restitution_core::distribution::Mixture::ppf;
-        self.value(py, function, &x, (&v, &z), threads)
+        let curve = Curve::named(what).map_err(python_error)?;
+        let x = x.as_slice()?;
+        let size = (x.len(), threads);
+        self.fill(py, (&v, &z), size, |at, out, resources, monitor| {
+            let x = Broadcast::new(x, "x", x.len())?;
+            self.0.evaluate(curve, x, at, out, resources, monitor)
+        })
     }
 
     /// Draws `size` coefficients of restitution at impact velocities v in m/s under conditions z.

@@ -15,7 +15,6 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 _ANY: Floats = np.zeros(1)
-_Function = Callable[[Floats, Floats, Floats, int], tuple[Floats, KeyboardInterrupt | None]]
 
 
 @dataclass(frozen=True)
@@ -108,10 +107,8 @@ class Table:
         values = [np.asarray(value, dtype=np.float64) for value in (x, v, z)]
         shape = np.broadcast_shapes(*(value.shape for value in values))
         points = np.broadcast_to(values[0], shape).ravel()
-        function: _Function = getattr(self.mixture, what)
-        found, interrupted = function(
-            points, _flat(values[1], shape), _flat(values[2], shape), checked_threads(threads)
-        )
+        at = _flat(values[1], shape), _flat(values[2], shape)
+        found, interrupted = self.mixture.value(what, points, *at, checked_threads(threads))
         if interrupted:
             raise KeyboardInterrupt from interrupted
         return found.reshape(shape)

@@ -123,6 +123,9 @@ impl Mixture {
     /// The smallest ε at which the distribution function reaches q. It is linear between neighbouring edges of all parts, which a
     /// binary search in each part finds.
     fn quantile(&self, parts: &Parts, q: f64) -> f64 {
+        if !(0.0..=1.0).contains(&q) {
+            return f64::NAN;
+        }
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (component, _) in parts.iter() {
             let edges = self.histogram(component).0;
@@ -150,57 +153,24 @@ impl Mixture {
         }
     }
 
-    /// Cumulative distribution function at each `x`.
-    pub fn cdf(
+    /// A function of the distribution at each `x`.
+    ///
+    /// # Errors
+    /// [`Error::Threads`].
+    pub fn evaluate(
         &self,
+        curve: Curve,
         x: Broadcast,
         at: At,
         out: &mut [f64],
         resources: Resources,
         monitor: &Monitor,
     ) -> Result<(), Error> {
-        self.each(x, at, out, resources, monitor, Self::below)
-    }
-
-    /// Probability density at each `x`; bins are half-open, lo ≤ x < hi.
-    pub fn pdf(
-        &self,
-        x: Broadcast,
-        at: At,
-        out: &mut [f64],
-        resources: Resources,
-        monitor: &Monitor,
-    ) -> Result<(), Error> {
-        self.each(x, at, out, resources, monitor, Self::density)
-    }
-
-    /// Quantile for each probability `q`; NaN unless 0 ≤ q ≤ 1.
-    pub fn ppf(
-        &self,
-        q: Broadcast,
-        at: At,
-        out: &mut [f64],
-        resources: Resources,
-        monitor: &Monitor,
-    ) -> Result<(), Error> {
-        self.each(q, at, out, resources, monitor, |mixture, parts, q| {
-            if (0.0..=1.0).contains(&q) {
-                mixture.quantile(parts, q)
-            } else {
-                f64::NAN
-            }
-        })
-    }
-
-    fn each(
-        &self,
-        x: Broadcast,
-        at: At,
-        out: &mut [f64],
-        resources: Resources,
-        monitor: &Monitor,
-        value: impl Fn(&Self, &Parts, f64) -> f64 + Sync,
-    ) -> Result<(), Error> {
+        let value = match curve {
+            Curve::Cdf => Self::below,
+            Curve::Pdf => Self::density,
+            Curve::Ppf => Self::quantile,
+        };
         let nodes = &self.layout.nodes;
         in_blocks(out, resources, monitor, |first, block| {
             for (i, out) in block.iter_mut().enumerate() {
@@ -216,6 +186,28 @@ impl Mixture {
                 };
             }
         })
+    }
+}
+
+/// A function of the distribution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Curve {
+    /// Cumulative distribution function.
+    Cdf,
+    /// Probability density; bins are half-open, lo ≤ x < hi.
+    Pdf,
+    /// Quantile of a probability; NaN unless it is in [0, 1].
+    Ppf,
+}
+
+impl Curve {
+    /// The function with this name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an unknown name.
+    pub fn named(name: &str) -> Result<Self, Error> {
+        let all = [("cdf", Self::Cdf), ("pdf", Self::Pdf), ("ppf", Self::Ppf)];
+        Error::chosen("what", name, &all)
     }
 }
 

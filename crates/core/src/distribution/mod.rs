@@ -11,7 +11,7 @@ mod nodes;
 pub use batches::Impacts;
 pub use counter::{Counter, Counts};
 pub use levels::{COARSE, FINE, Levels};
-pub use mixture::{At, Layout, Mixture};
+pub use mixture::{At, Curve, Layout, Mixture};
 pub use nodes::Nodes;
 
 use crate::{Error, Monitor, Resources};

@@ -37,6 +37,7 @@
 
 use super::{Coulomb, Hypothesis, Sliding, phases::Gain, phases::ImpactSoFar};
 use crate::law::{Compliance, Components, Contact, Frictionless, ImpulseRule, Response};
+use crate::math::Vector;
 use crate::math::flat::{cross, norm, rotate, rotate_back, scalar};
 use crate::math::nodal::{NODES, Nodal, QUADRATURE, dot, each, moments, rows};
 use crate::math::roots::{deflated, largest_root, zeros};
@@ -103,12 +104,7 @@ impl Sliding<Scalar> for Compliance {
         let scale = speed_unit / response_unit;
         let [along, across] = rotate_back(axes.first, path.now.friction);
         Response {
-            impulse: Components {
-                normal: path.now.normal,
-                along,
-                across,
-            }
-            .map(|component| one(component * scale)),
+            impulse: Components::in_lane(Vector::new(along, across, path.now.normal) * scale),
             separation_speed: one(path.now.speed.max(0.0) * speed_unit),
         }
     }
