@@ -4,7 +4,6 @@ mod agreement;
 mod asymmetric;
 mod bins;
 mod bodies;
-mod both_loops;
 mod closed_forms;
 mod common;
 mod contact;
