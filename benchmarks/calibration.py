@@ -154,9 +154,9 @@ def sentence(found: Calibration) -> str:
     below = found.truth[:, 1] < found.limit
     return (
         f"{len(found.rank)} experiments. A surface that is not that of a sphere was found in "
-        f"{100 * found.told.mean():.0f} % of all, in {100 * found.told[small].mean():.0f} % where $L/R < 0.008$, and in "
-        f"{100 * found.told[~small].mean():.0f} % above. Where none was found, $L/R$ was below the "
-        f"upper limit in {100 * below[~found.told].mean():.0f} %.\n"
+        f"{100 * found.told.mean():.0f} % of all, in {100 * found.told[small].mean():.0f} % where "
+        f"$L/R < 0.008$, and in {100 * found.told[~small].mean():.0f} % above. Where none was found, $L/R$ was "
+        f"below the upper limit in {100 * below[~found.told].mean():.0f} %.\n"
     )
 
 
