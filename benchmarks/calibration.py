@@ -155,8 +155,8 @@ def sentence(found: Calibration) -> str:
     return (
         f"{len(found.rank)} experiments. A surface that is not that of a sphere was found in "
         f"{100 * found.told.mean():.0f} % of all, in {100 * found.told[small].mean():.0f} % where "
-        f"$L/R < 0.008$, and in {100 * found.told[~small].mean():.0f} % above. Where none was found, $L/R$ was "
-        f"below the upper limit in {100 * below[~found.told].mean():.0f} %.\n"
+        f"$L/R < 0.008$, and in {100 * found.told[~small].mean():.0f} % above. Where none was found, $L/R$ "
+        f"was below the upper limit in {100 * below[~found.told].mean():.0f} %.\n"
     )
 
 
