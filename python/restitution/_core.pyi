@@ -271,8 +271,8 @@ def encounters(
     other: Solid | Rigid | None,
     law: Law,
     drawn: Mapping[str, Any],
-    states: npt.NDArray[np.float64] | None,
-    contacts: bool,
+    given: npt.NDArray[np.float64] | None,
+    wanted: tuple[bool, bool],
     threads: int,
     progress: Callable[[int], None] | None,
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], float, KeyboardInterrupt | None]: ...
+) -> tuple[list[npt.NDArray[np.float64]], list[npt.NDArray[np.float64]], float, KeyboardInterrupt | None]: ...

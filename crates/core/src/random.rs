@@ -2,7 +2,7 @@
 //!
 //! J. K. Salmon, M. A. Moraes, R. O. Dror and D. E. Shaw, *Parallel random numbers: as easy as 1, 2, 3*, Proc. SC11 (2011).
 
-use rand_philox::philox4x32_10;
+use rand_philox::{Philox, philox4x32_10};
 
 /// A uniform number in [0, 1) with 53 random bits: Philox4x32-10, key = seed, counter = (particle, draw).
 pub fn uniform(seed: u64, particle: u64, draw: u32) -> f64 {
@@ -39,22 +39,39 @@ pub fn of_asperity(seed: u64, asperity: u64, draw: u32) -> (f64, f64) {
     (unit(a, b), unit(c, d))
 }
 
-/// Two uniform numbers in [0, 1) for a draw of an encounter of two bodies: counter = (encounter, draw, 4).
+/// Two uniform numbers in [0, 1) for a draw of some encounters of two bodies, or particles of a gas: counter = (encounter, draw, 4).
+pub fn of_encounters(seed: u64, first: u64, draw: u32, numbers: &mut [(f64, f64)]) {
+    in_row(seed, first, [draw, 4], numbers);
+}
+
+/// Two uniform numbers in [0, 1) for some candidates of a gas: counter = (candidate, 0, 5).
+pub fn of_candidates(seed: u64, first: u64, numbers: &mut [(f64, f64)]) {
+    in_row(seed, first, [0, 5], numbers);
+}
+
+/// Two uniform numbers in [0, 1) for a draw, from 1 on, of the encounter of a candidate: counter = (candidate, draw, 5).
 #[inline(always)]
-pub fn of_encounter(seed: u64, encounter: u64, draw: u32) -> (f64, f64) {
-    let (low, high) = halves(encounter);
+pub fn of_candidate(seed: u64, candidate: u64, draw: u32) -> (f64, f64) {
+    let (low, high) = halves(candidate);
     let key = halves(seed);
-    let [a, b, c, d] = philox4x32_10([low, high, draw, 4], [key.0, key.1]);
+    let [a, b, c, d] = philox4x32_10([low, high, draw, 5], [key.0, key.1]);
     (unit(a, b), unit(c, d))
 }
 
-/// Two uniform numbers in [0, 1) for a draw of a gas: counter = (draw, 0, 5).
-#[inline(always)]
-pub fn of_gas(seed: u64, draw: u64) -> (f64, f64) {
-    let (low, high) = halves(draw);
+/// Two numbers each for counters that begin with successive numbers and end with the same two words.
+fn in_row(seed: u64, first: u64, [third, last]: [u32; 2], numbers: &mut [(f64, f64)]) {
+    const BLOCK: usize = 64;
     let key = halves(seed);
-    let [a, b, c, d] = philox4x32_10([low, high, 0, 5], [key.0, key.1]);
-    (unit(a, b), unit(c, d))
+    let rest = u128::from(third) << 64 | u128::from(last) << 96;
+    let mut words = [0; 4 * BLOCK];
+    for (i, some) in numbers.chunks_mut(BLOCK).enumerate() {
+        let counter = u128::from(first + (i * BLOCK) as u64) | rest;
+        let words = &mut words[..4 * some.len()];
+        Philox::new([key.0, key.1], counter).fill_u32(words);
+        for (pair, &[a, b, c, d]) in some.iter_mut().zip(words.as_chunks().0) {
+            *pair = (unit(a, b), unit(c, d));
+        }
+    }
 }
 
 #[inline(always)]
@@ -77,6 +94,17 @@ mod tests {
     fn is_the_published_generator() {
         let bits = 0xe169_c58d_6627_e8d5_u64 >> 11;
         assert_eq!(uniform(0, 0, 0), bits as f64 / 2.0_f64.powi(53));
+    }
+
+    /// In rows as one by one, also where the lower half of the counter overflows.
+    #[test]
+    fn rows_are_what_each_is() {
+        let first = (1 << 32) - 70;
+        let mut numbers = [(0.0, 0.0); 150];
+        of_candidates(7, first, &mut numbers);
+        for (number, i) in numbers.into_iter().zip(first..) {
+            assert_eq!(number, of_candidate(7, i, 0));
+        }
     }
 
     /// 10⁵ numbers: mean and variance within five standard errors, neighbours in any argument uncorrelated.
@@ -110,10 +138,15 @@ mod tests {
         stream(&|i| of_asperity(7, i, 0).0);
         stream(&|i| of_asperity(7, 3, i as u32).1);
         stream(&|i| of_impact(i, 3, 0));
-        stream(&|i| of_encounter(7, i, 0).0);
-        stream(&|i| of_encounter(7, 3, i as u32).1);
-        stream(&|i| of_gas(7, i).0);
-        stream(&|i| of_gas(7, i).1);
+        let encounter = |i, draw| {
+            let mut numbers = [(0.0, 0.0)];
+            of_encounters(7, i, draw, &mut numbers);
+            numbers[0]
+        };
+        stream(&|i| encounter(i, 0).0);
+        stream(&|i| encounter(3, i as u32).1);
+        stream(&|i| of_candidate(7, i, 0).0);
+        stream(&|i| of_candidate(7, 3, i as u32).1);
         stream(&|i| {
             if i % 2 == 0 {
                 pair(7, i / 2).0

@@ -1,11 +1,12 @@
 //! Encounters of two bodies in free flight.
 
 use restitution_core::pair::{
-    Encounters, Ending, Hit, Meeting, PairState, PairTable, Partner, encounter,
+    ENCOUNTER, Encounters, Ending, Hit, Meeting, PairState, PairTable, PairVariable, Partner,
+    encounter,
 };
 use restitution_core::{
-    AnyBody, Dumbbell, Frictionless, Law, Level, Matter, Monitor, Quaternion, Resources, Rigid,
-    RigidBall, TangentialRestitution, Vector,
+    AnyBody, Dumbbell, Frictionless, Law, Level, LoadedSphere, Matter, Monitor, Quaternion,
+    Resources, Rigid, RigidBall, TangentialRestitution, Vector, Viscoelastic,
 };
 
 /// Of mass 1 and R = 1.
@@ -67,8 +68,8 @@ fn convex_bodies_meet() {
             let bodies = [one, two];
             let run = drawn(bodies, 12);
             let table = record(&run, &law, 1, Level::best());
-            for row in table.encounters.chunks(table.encounters.len() / run.count) {
-                let states = before(row);
+            for row in rows(&table) {
+                let states = before(&row);
                 let (found, hits) = follow(bodies, &law, states);
                 let end = hits.first().map_or(found.time, |hit| hit.time);
                 for k in 0..=40 {
@@ -118,8 +119,17 @@ fn drawn<'a>(bodies: [&'a Partner; 2], count: usize) -> Encounters<'a> {
 
 fn record(run: &Encounters<'_>, law: &Law<'_>, threads: usize, level: Level) -> PairTable {
     let resources = Resources { threads, level };
-    run.record(law, None, true, resources, &Monitor::default())
+    run.record(law, None, [true; 2], resources, &Monitor::default())
         .unwrap()
+}
+
+/// The numbers of each encounter, in the order of the variables.
+fn rows(table: &PairTable) -> Vec<Vec<f64>> {
+    let row = |number| {
+        let of = |variable: &PairVariable| table.of(variable.0, number).to_vec();
+        ENCOUNTER.iter().flat_map(of).collect()
+    };
+    (0..table.encounters[0].len()).map(row).collect()
 }
 
 /// The states before an encounter, as they were recorded.
@@ -176,8 +186,8 @@ fn an_encounter_keeps_what_it_must() {
             let run = drawn(bodies, 400);
             let table = record(&run, &law, 1, Level::best());
             let mut touched = 0;
-            for row in table.encounters.chunks(table.encounters.len() / run.count) {
-                let states = before(row);
+            for row in rows(&table) {
+                let states = before(&row);
                 let (found, hits) = follow(bodies, &law, states);
                 assert_eq!(found.contacts as usize, hits.len());
                 assert_eq!(found.contacts as f64, row[0]);
@@ -201,8 +211,8 @@ fn spheres_follow_the_closed_form() {
     let run = drawn([&sphere; 2], 1000);
     let law = frictionless(0.6);
     let table = record(&run, &law, 1, Level::best());
-    for row in table.encounters.chunks(table.encounters.len() / run.count) {
-        let states = before(row);
+    for row in rows(&table) {
+        let states = before(&row);
         let (found, hits) = follow([&sphere; 2], &law, states);
         let [hit] = hits[..] else { panic!("{hits:?}") };
         let apart = states[0].position - states[1].position;
@@ -227,8 +237,8 @@ fn time_can_run_backwards() {
     for bodies in [[&one, &one], [&three, &one]] {
         let run = drawn(bodies, 600);
         let table = record(&run, &law, 1, Level::best());
-        for row in table.encounters.chunks(table.encounters.len() / run.count) {
-            let states = before(row);
+        for row in rows(&table) {
+            let states = before(&row);
             let (there, _) = follow(bodies, &law, states);
             if there.contacts == 0 || there.ending == Ending::Collapse {
                 continue;
@@ -260,8 +270,8 @@ fn nothing_touches_before_the_first_contact() {
     for bodies in [[&one, &one], [&three, &three]] {
         let run = drawn(bodies, 100);
         let table = record(&run, &law, 1, Level::best());
-        for row in table.encounters.chunks(table.encounters.len() / run.count) {
-            let states = before(row);
+        for row in rows(&table) {
+            let states = before(&row);
             let (found, hits) = follow(bodies, &law, states);
             let end = hits.first().map_or(found.time, |hit| hit.time);
             for k in 0..=200 {
@@ -279,21 +289,19 @@ fn nothing_touches_before_the_first_contact() {
 /// Neither threads nor vectors show.
 #[test]
 fn any_number_of_threads_gives_the_same_encounters() {
-    let (one, three) = (dumbbell(1.0), clump());
-    let run = drawn([&three, &one], 600);
-    let law = frictionless(0.8);
-    let first = record(&run, &law, 1, Level::Scalar);
-    for (threads, level) in Level::available().enumerate() {
-        let again = record(&run, &law, threads + 1, level);
-        let bits = |table: &PairTable| -> Vec<u64> {
-            table
-                .encounters
-                .iter()
-                .chain(&table.hits)
-                .map(|x| x.to_bits())
-                .collect()
-        };
-        assert_eq!(bits(&first), bits(&again));
+    let (one, two, three) = (dumbbell(1.0), dumbbell(0.1), clump());
+    for bodies in [[&three, &one], [&one, &two]] {
+        let run = drawn(bodies, 600);
+        let law = frictionless(0.8);
+        let first = record(&run, &law, 1, Level::Scalar);
+        for (threads, level) in Level::available().enumerate() {
+            let again = record(&run, &law, threads + 1, level);
+            let bits = |table: &PairTable| -> Vec<u64> {
+                let columns = table.encounters.iter().flatten();
+                columns.chain(&table.hits).map(|x| x.to_bits()).collect()
+            };
+            assert_eq!(bits(&first), bits(&again));
+        }
     }
 }
 
@@ -303,12 +311,79 @@ fn a_plane_is_hit_by_everything() {
     let (one, plane) = (dumbbell(1.0), Partner::plane());
     let run = drawn([&one, &plane], 1000);
     let table = record(&run, &frictionless(0.9), 1, Level::best());
-    for row in table.encounters.chunks(table.encounters.len() / run.count) {
+    for row in rows(&table) {
         assert!(row[0] >= 1.0);
     }
     for hit in table.hits.chunks(12) {
         assert_eq!(hit[1..4], [0.0, 0.0, 1.0]);
         assert!(hit[6].abs() < 1e-12 && hit[9] > 0.0);
         assert!((hit[11] / hit[10] - 0.9).abs() < 1e-12);
+    }
+}
+
+/// Balls on an axis without friction, which are followed in lanes, end as those that are followed one by one: dumbbells of any aspect ratio, a sphere whose
+/// centre of mass is not at its centre, spheres; with coefficients that depend on the speed, and where contacts accumulate.
+#[test]
+fn lanes_follow_what_one_by_one_follows() {
+    let loaded = LoadedSphere::new(0.7, 0.3, 0.4, 0.3).unwrap();
+    let loaded = Partner::new("body", AnyBody::from(loaded)).unwrap();
+    let bodies = [
+        dumbbell(0.0),
+        dumbbell(0.1),
+        dumbbell(1.0),
+        dumbbell(4.0),
+        loaded,
+    ];
+    let material = Viscoelastic::new(1e6, 0.3, 1e-3, 1e3, 0.01).unwrap();
+    let laws = [
+        frictionless(1.0),
+        frictionless(0.0),
+        Law::new(material, Frictionless).unwrap(),
+    ];
+    for (i, one) in bodies.iter().enumerate() {
+        for two in &bodies[i..] {
+            for law in &laws {
+                let run = drawn([one, two], 150);
+                let table = record(&run, law, 1, Level::best());
+                let mut hits = table.hits.chunks(12);
+                for row in &rows(&table) {
+                    let mut own = Vec::new();
+                    let add = |hit: &Hit| {
+                        own.truncate(hit.number as usize);
+                        own.push(*hit);
+                    };
+                    let found = encounter([one, two], law, before(row), |_| 0.5, add).unwrap();
+                    assert_eq!(row[0], found.contacts as f64);
+                    assert_eq!(row[1], f64::from(found.ending as u8));
+                    let near = |a: f64, b: f64| {
+                        assert!((a - b).abs() < 1e-11 * (1.0 + b.abs()), "{a} {b}");
+                    };
+                    near(row[2], found.time);
+                    for hit in &own[..found.contacts as usize] {
+                        let recorded = hits.next().unwrap();
+                        near(recorded[0], hit.time);
+                        let vectors = [hit.normal, hit.point, hit.impulse];
+                        let numbers = vectors.map(Vector::parts);
+                        let numbers = numbers.as_flattened().iter().chain(&hit.speeds);
+                        for (&a, &b) in recorded[1..].iter().zip(numbers) {
+                            near(a, b);
+                        }
+                    }
+                    for i in 0..2 {
+                        let state = &found.states[i];
+                        let vectors =
+                            [(24, state.velocity), (36, state.spin), (48, state.position)];
+                        for (at, vector) in vectors {
+                            for (k, b) in vector.parts().into_iter().enumerate() {
+                                near(row[at + 3 * i + k], b);
+                            }
+                        }
+                        let attitude = state.attitude.parts();
+                        let along: f64 = (0..4).map(|k| row[62 + 4 * i + k] * attitude[k]).sum();
+                        near(along.abs(), 1.0);
+                    }
+                }
+            }
+        }
     }
 }

@@ -55,12 +55,12 @@ fn partners(body: &Dropped<'_>, other: Option<&Dropped<'_>>) -> PyResult<[Partne
     Ok([body, other])
 }
 
-type Rows<'py> = Bound<'py, PyArray2<f64>>;
+type Columns<'py> = Vec<Bound<'py, PyArray2<f64>>>;
 
-/// Follows encounters, drawn or given as rows of position, velocity, ω and attitude of each body. Returns rows of `PAIR_ENCOUNTER` and, if asked for, of
-/// `PAIR_HIT`, the rate of attempts, and the `KeyboardInterrupt` that cut the run short, if any.
+/// Follows encounters, drawn or given as rows of position, velocity, ω and attitude of each body. Returns columns of `PAIR_ENCOUNTER`, those of the states if
+/// they are asked for, and of `PAIR_HIT` if contacts are, the rate of attempts, and the `KeyboardInterrupt` that cut the run short, if any.
 #[pyfunction]
-#[pyo3(signature = (body, other, law, drawn, states, contacts, threads, progress))]
+#[pyo3(signature = (body, other, law, drawn, given, wanted, threads, progress))]
 #[expect(clippy::too_many_arguments, reason = "one call from Python")]
 fn encounters<'py>(
     py: Python<'py>,
@@ -68,37 +68,52 @@ fn encounters<'py>(
     other: Option<Dropped<'py>>,
     law: &Law,
     drawn: Drawn,
-    states: Option<PyReadonlyArray2<'py, f64>>,
-    contacts: bool,
+    given: Option<PyReadonlyArray2<'py, f64>>,
+    wanted: [bool; 2],
     threads: usize,
     progress: Option<Bound<'py, PyAny>>,
-) -> PyResult<(Rows<'py>, Rows<'py>, f64, Option<PyErr>)> {
+) -> PyResult<(Columns<'py>, Columns<'py>, f64, Option<PyErr>)> {
     let [one, two] = partners(&body, other.as_ref())?;
     let run = drawn.of([&one, &two]);
     let resources = resources(threads)?;
-    let given: Option<Vec<[PairState; 2]>> = match &states {
+    let given: Option<Vec<[PairState; 2]>> = match &given {
         Some(rows) => Some(rows.as_slice()?.as_chunks().0.iter().map(state).collect()),
         None => None,
     };
     let law = law.law();
     let (table, interrupted) = watch::run(py, progress, |monitor| {
-        run.record(&law, given.as_deref(), contacts, resources, monitor)
+        run.record(&law, given.as_deref(), wanted, resources, monitor)
     })?;
-    let width = |all: &[PairVariable]| -> usize {
-        all.iter()
-            .map(|&(.., parts, each)| parts * (1 + usize::from(each)))
-            .sum()
-    };
-    let shaped = |values: Vec<f64>, width: usize| {
+    let shaped = |(values, variable): (Vec<f64>, &PairVariable)| {
+        let width = width(variable);
         let rows = values.len() / width;
         values.into_pyarray(py).reshape([rows, width])
     };
+    let hits = table.hits.chunks(HIT.iter().map(width).sum());
+    let mut contacts = vec![Vec::new(); HIT.len()];
+    for mut row in hits {
+        for (column, variable) in contacts.iter_mut().zip(HIT) {
+            let (own, rest) = row.split_at(width(variable));
+            column.extend_from_slice(own);
+            row = rest;
+        }
+    }
+    let columns = table.encounters.into_iter().zip(ENCOUNTER).map(shaped);
     Ok((
-        shaped(table.encounters, width(ENCOUNTER))?,
-        shaped(table.hits, width(HIT))?,
+        columns.collect::<PyResult<_>>()?,
+        contacts
+            .into_iter()
+            .zip(HIT)
+            .map(shaped)
+            .collect::<PyResult<_>>()?,
         run.attempt_rate(),
         interrupted,
     ))
+}
+
+/// The numbers of a variable of both bodies.
+fn width(&(.., parts, each): &PairVariable) -> usize {
+    parts * (1 + usize::from(each))
 }
 
 fn state(row: &[f64; 26]) -> [PairState; 2] {

@@ -3,7 +3,7 @@
 use crate::records::here;
 use crate::rigid::vector;
 use restitution_core::pair::{
-    ENCOUNTER, Encounters, HIT, Meeting, PairState, PairTable, PairVariable, Partner,
+    Encounters, HIT, Meeting, PairState, PairTable, PairVariable, Partner,
 };
 use restitution_core::{Error, Monitor, Quaternion, Run, Vector};
 use std::ops::Range;
@@ -31,10 +31,9 @@ const SHOWN: [&str; 8] = [
 pub fn meet(run: &Run<'_>, pairs: &[f64; NUMBERS], number: usize) -> Result<Vec<f64>, Error> {
     let body = Partner::new("shape", run.body)?;
     let table = follow(run, &body, pairs, number..number + 1, true)?;
-    let row = &table.encounters[..];
-    let mut made: Vec<f64> = SHOWN.map(|name| column(row, name)[0]).to_vec();
+    let mut made: Vec<f64> = SHOWN.map(|name| table.of(name, 0)[0]).to_vec();
     made.extend(drawn_as(&body));
-    let mut states = [0, 1].map(|i| before(row, i));
+    let mut states = [0, 1].map(|i| before(&table, 0, i));
     let mut clock = 0.0;
     made.extend(flight(&body, clock, &states));
     for hit in table.hits.chunks(width(HIT)) {
@@ -66,11 +65,9 @@ pub fn survey(
 ) -> Result<Vec<f64>, Error> {
     let body = Partner::new("shape", run.body)?;
     let table = follow(run, &body, pairs, first..first + count, false)?;
-    let rows = table.encounters.chunks(width(ENCOUNTER));
-    Ok(rows
-        .flat_map(|row| {
-            ["contacts", "ending", "restitution_energy"].map(|name| column(row, name)[0])
-        })
+    let shown = ["contacts", "ending", "restitution_energy"];
+    Ok((0..count)
+        .flat_map(|number| shown.map(|name| table.of(name, number)[0]))
         .collect())
 }
 
@@ -98,16 +95,21 @@ fn follow(
         seed: run.seed,
     };
     let record = |states: Option<&[[PairState; 2]]>, contacts| {
-        encounters.record(&run.law, states, contacts, here(), &Monitor::default())
+        encounters.record(
+            &run.law,
+            states,
+            [true, contacts],
+            here(),
+            &Monitor::default(),
+        )
     };
     if !given {
         return record(None, contacts);
     }
     let drawn = record(None, false)?;
-    let rows = drawn.encounters.chunks(width(ENCOUNTER));
-    let states: Vec<_> = rows
-        .map(|row| {
-            let mut states = [0, 1].map(|i| before(row, i));
+    let states: Vec<_> = (0..encounters.count)
+        .map(|number| {
+            let mut states = [0, 1].map(|i| before(&drawn, number, i));
             let [a, b] = &states;
             let normal = (a.position - b.position).cross(a.velocity - b.velocity);
             for (state, spin) in states.iter_mut().zip([one, two]) {
@@ -127,21 +129,10 @@ fn size(&(.., parts, each): &PairVariable) -> usize {
     parts * (1 + usize::from(each))
 }
 
-/// The numbers of a variable in the row of an encounter.
-fn column<'a>(row: &'a [f64], name: &str) -> &'a [f64] {
-    let ahead = ENCOUNTER.iter().take_while(|variable| variable.0 != name);
-    let (mut start, mut count) = (0, 0);
-    for variable in ahead {
-        start += size(variable);
-        count += 1;
-    }
-    &row[start..][..size(&ENCOUNTER[count])]
-}
-
 /// A body at the beginning.
-fn before(row: &[f64], body: usize) -> PairState {
-    let of = |name| column(row, name).as_chunks().0[body];
-    let &[w, x, y, z] = column(row, "attitude_before")[4 * body..]
+fn before(table: &PairTable, number: usize, body: usize) -> PairState {
+    let of = |name| table.of(name, number).as_chunks().0[body];
+    let &[w, x, y, z] = table.of("attitude_before", number)[4 * body..]
         .first_chunk()
         .expect("an attitude");
     PairState {

@@ -20,6 +20,8 @@ from restitution.laws import CollisionLaw
 from restitution.pair.materials import between
 from restitution.pair.states import read_states
 
+Columns: TypeAlias = dict[str, FloatArray]
+"""Variables by their names."""
 Record: TypeAlias = Literal["encounters", "state", "contacts"]
 _STATE = {"position": 3, "velocity": 3, "angular_velocity": 3, "attitude": 4}
 _ENDINGS: list[str] = _core.PAIR_ENDINGS
@@ -117,24 +119,29 @@ class Pairs:
             seed=seed,
         )
 
-    def in_chunks(self, *, contacts: bool, threads: int) -> Iterator[tuple[FloatArray, FloatArray, float]]:
+    def in_chunks(
+        self, threads: int, *, states: bool = False, contacts: bool = False
+    ) -> Iterator[tuple[Columns, Columns, float]]:
         """Follow those that are drawn, few at a time."""
         count = self.drawn["encounters"]
         for first in range(0, count, _CHUNK):
             self.drawn.update(first=first, encounters=min(_CHUNK, count - first))
-            yield self.follow(None, contacts=contacts, threads=threads)
+            yield self.follow(None, (states, contacts), threads)
 
     def follow(
-        self, states: FloatArray | None, *, contacts: bool, threads: int, progress: Any = None
-    ) -> tuple[FloatArray, FloatArray, float]:
-        """Follow them; rows of encounters, rows of contacts, and the rate of attempts."""
+        self, given: FloatArray | None, wanted: tuple[bool, bool], threads: int, progress: Any = None
+    ) -> tuple[Columns, Columns, float]:
+        """Follow them; variables of encounters and of contacts by their names, and the rate of attempts.
+
+        Places and attitudes are among them if the first of `wanted` is true, contacts if the second is.
+        """
         other = None if isinstance(self.other, Plane) else self.other.compiled
         law = self.law
         if not isinstance(self.other, Plane):
             law = between(law, self.other.mass / self.body.mass)
         try:
-            rows, hits, rate, interrupted = _core.encounters(
-                self.body.compiled, other, law.compiled, self.drawn, states, contacts, threads, progress
+            found, hits, rate, interrupted = _core.encounters(
+                self.body.compiled, other, law.compiled, self.drawn, given, wanted, threads, progress
             )
         except _core.ParameterError as error:
             bodies = {"body": self.body, "other": self.other}
@@ -142,7 +149,7 @@ class Pairs:
             raise ParameterError(wrong(error.name, value, error.allowed)) from None
         if interrupted:
             raise interrupted
-        return rows, hits, rate
+        return _named(_core.PAIR_ENCOUNTER, found), _named(_core.PAIR_HIT, hits), rate
 
 
 def check_kinds(body: object, other: object, law: object) -> None:
@@ -310,9 +317,9 @@ def encounters(
     count = pairs.drawn["encounters"]
     check_size("encounters", count, count, 16 * WIDTH, "encounters")
     with progress_bar("encounters", count, "encounters", show=progress) as tell:
-        found, hits, rate = pairs.follow(rows, contacts=record == "contacts", threads=number, progress=tell)
-    full = states is not None or record != "encounters"
-    data = _dataset(found, hits if record == "contacts" else None, full=full)
+        wanted = (states is not None or record != "encounters", record == "contacts")
+        found, hits, rate = pairs.follow(rows, wanted, number, tell)
+    data = _dataset(found, hits if record == "contacts" else None)
     if states is None and impact_parameter is None:
         data.attrs |= {
             "attempt_rate": rate,
@@ -349,45 +356,44 @@ def _rows(states: xr.Dataset, *, plane: bool) -> FloatArray:
     return np.ascontiguousarray(np.concatenate(columns, axis=-1).reshape(len(columns[0]), -1))
 
 
-def _dataset(rows: FloatArray, hits: FloatArray | None, *, full: bool) -> xr.Dataset:
-    """Give the columns of the core their names, dimensions and units."""
+def _named(table: list[tuple[str, str, str, int, bool]], arrays: list[FloatArray]) -> Columns:
+    """Give variables their names and shapes (rows, particle, component), or fewer dimensions."""
+    found = {}
+    for (name, _, _, parts, each), values in zip(table, arrays, strict=False):
+        shape = (len(values), *((2,) if each else ()), *((parts,) if parts > 1 else ()))
+        found[name] = values.reshape(shape)
+    return found
+
+
+def _described(table: list[tuple[str, str, str, int, bool]], name: str) -> dict[str, Any]:
+    text, unit = next((text, unit) for own, text, unit, _, _ in table if own == name)
+    return {"long_name": text} | ({"units": unit} if unit else {})
+
+
+def _dataset(found: Columns, hits: Columns | None) -> xr.Dataset:
+    """Give the variables of the core dimensions and units."""
     variables: dict[str, Any] = {}
-    for name, values, about in columns(_core.PAIR_ENCOUNTER, rows):
-        if not full and name.startswith(("position", "attitude")):
-            continue
-        if name == "contacts":
-            values = values.astype(np.int64)
+    for name, values in found.items():
+        about = _described(_core.PAIR_ENCOUNTER, name)
+        kind: type = {"contacts": np.int64, "ending": np.int8}.get(name, np.float64)
         if name == "ending":
-            values = values.astype(np.int8)
-            about = about | {
+            about |= {
                 "flag_values": np.arange(len(_ENDINGS), dtype=np.int8),
                 "flag_meanings": " ".join(_ENDINGS),
             }
         last = "quaternion" if name.startswith("attitude") else "component"
-        variables[name] = (["encounter", "particle", last][: values.ndim], values, about)
+        dims = ["encounter", "particle", last][: values.ndim]
+        variables[name] = (dims, values.astype(kind, copy=False), about)
     if hits is not None:
         number = variables["contacts"][1]
         most = int(number.max(initial=0))
         there = np.arange(most) < number[:, np.newaxis]
-        for name, values, about in columns(_core.PAIR_HIT, hits):
+        for name, values in hits.items():
             table = np.full((len(number), most, *values.shape[1:]), np.nan)
             table[there] = values
-            variables[name] = (["encounter", "contact", "component"][: table.ndim], table, about)
+            dims = ["encounter", "contact", "component"][: table.ndim]
+            variables[name] = (dims, table, _described(_core.PAIR_HIT, name))
     coordinates: dict[str, Any] = {"component": ["x", "y", "z"]}
-    if full:
+    if "attitude_before" in found:
         coordinates["quaternion"] = ["w", "x", "y", "z"]
     return xr.Dataset(variables, coords=coordinates)
-
-
-def columns(
-    table: list[tuple[str, str, str, int, bool]], rows: FloatArray
-) -> list[tuple[str, Any, dict[str, Any]]]:
-    """Take rows apart into variables of shape (rows, particle, component), or of fewer dimensions."""
-    found, at = [], 0
-    for name, text, unit, parts, each in table:
-        width = parts * (1 + each)
-        shape = (len(rows), *((2,) if each else ()), *((parts,) if parts > 1 else ()))
-        about = {"long_name": text} | ({"units": unit} if unit else {})
-        found.append((name, np.ascontiguousarray(rows[:, at : at + width]).reshape(shape), about))
-        at += width
-    return found

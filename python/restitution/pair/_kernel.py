@@ -8,13 +8,12 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution import _core
 from restitution._internal.arrays import FloatArray, check_each, generator, positive, reals, whole
 from restitution._internal.parameters import ParameterError, Problem, shown, wrong
 from restitution._internal.resources import check_size, checked_threads
 from restitution.bodies import AnyBody
 from restitution.laws import CollisionLaw
-from restitution.pair._encounters import COLLAPSE, Pairs, Plane, columns, described, rate_unit
+from restitution.pair._encounters import COLLAPSE, Columns, Pairs, Plane, described, rate_unit
 
 _MANY = 20
 """The least encounters in a bin of v_n, and the number of neighbours in u_t from which one is drawn."""
@@ -187,8 +186,8 @@ class PairKernel:
         for place, ratio in enumerate(ratios.tolist()):
             pairs = Pairs.thermal(body, other, law, temperature, ratio, count, seed)
             met = 0
-            for rows, hits, flux in pairs.in_chunks(contacts=True, threads=number):
-                part, left_out = _kept(rows, hits, place, plane=isinstance(other, Plane))
+            for found, hits, flux in pairs.in_chunks(number, states=True, contacts=True):
+                part, left_out = _kept(found, hits, place, plane=isinstance(other, Plane))
                 rate, lost = flux, lost + left_out
                 met += len(part["contacts"])
                 parts.append(part)
@@ -340,12 +339,9 @@ def _resolved(u: FloatArray, k: FloatArray) -> tuple[FloatArray, FloatArray, Flo
     return approach, tangential, across, np.cross(k, across)
 
 
-def _kept(
-    rows: FloatArray, hits: FloatArray, place: int, *, plane: bool
-) -> tuple[dict[str, Any], tuple[int, int]]:
+def _kept(each: Columns, hits: Columns, place: int, *, plane: bool) -> tuple[dict[str, Any], tuple[int, int]]:
     """Return what is kept of encounters with contact, and the numbers of those that collapsed or recede."""
-    each = {name: values for name, values, _ in columns(_core.PAIR_ENCOUNTER, rows)}
-    times = next(values for name, values, _ in columns(_core.PAIR_HIT, hits) if name == "time")
+    times = hits["time"]
     contacts = each["contacts"].astype(np.int64)
     starts = np.cumsum(contacts) - contacts
     collapsed = each["ending"] == COLLAPSE

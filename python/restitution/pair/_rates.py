@@ -6,7 +6,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution import _core
 from restitution._internal.arrays import check_each, positive, reals, whole
 from restitution._internal.resources import checked_threads
 from restitution.bodies import AnyBody
@@ -14,15 +13,6 @@ from restitution.drop.dataset import made_here
 from restitution.laws import CollisionLaw
 from restitution.pair._encounters import COLLAPSE, LASTED, Pairs
 from restitution.pair.axes import turned_axes
-
-
-def _places(*names: str) -> list[slice]:
-    """Return where variables are in a row of an encounter."""
-    at, places = 0, {}
-    for name, _, _, parts, each in _core.PAIR_ENCOUNTER:
-        places[name] = slice(at, at + parts * (1 + each))
-        at = places[name].stop
-    return [places[name] for name in names]
 
 
 def rates(
@@ -128,22 +118,17 @@ def _of(
     """Follow the encounters of one ratio of temperatures, chunk by chunk."""
     pairs = Pairs.thermal(body, body, law, temperature, ratio, count, seed)
     sums, squares, collapsed, lasted, rate = np.zeros(4), np.zeros(4), 0, 0, 0.0
-    contacts, ending, *energy = _places(
-        "contacts",
-        "ending",
-        "translational_energy_before",
-        "translational_energy_after",
-        "rotational_energy_before",
-        "rotational_energy_after",
-    )
-    for rows, _, flux in pairs.in_chunks(contacts=False, threads=threads):
+    for met, _, flux in pairs.in_chunks(threads):
         rate = flux
-        good = rows[:, ending.start] != COLLAPSE
+        good = met["ending"] != COLLAPSE
         collapsed += int(np.count_nonzero(~good))
-        lasted += int(np.count_nonzero(rows[:, ending.start] == LASTED))
-        number = rows[good, contacts.start]
-        before, after, turning, later = (rows[good][:, place].mean(axis=1) for place in energy)
-        each = np.stack([number, number > 0, after - before, later - turning])
+        lasted += int(np.count_nonzero(met["ending"] == LASTED))
+        number = met["contacts"][good]
+        gained, turned = (
+            (met[f"{kind}_energy_after"] - met[f"{kind}_energy_before"])[good].mean(axis=1)
+            for kind in ("translational", "rotational")
+        )
+        each = np.stack([number, number > 0, gained, turned])
         sums += each.sum(axis=1)
         squares += (each**2).sum(axis=1)
     means = sums / count

@@ -12,7 +12,7 @@ pub(super) const SHORTEST: f64 = 1.0 / 67_108_864.0;
 /// At a grazing contact the last step is at most this fraction of the flight time, and turns the axis by at most this angle, 2⁻¹¹...
 pub(super) const LAST: f64 = 1.0 / 2048.0;
 /// ...and leaves a gap of at most this, the resolution: 2⁻⁵² R.
-pub(super) const INVISIBLE: f64 = 1.0 / 4_503_599_627_370_496.0;
+pub(crate) const INVISIBLE: f64 = 1.0 / 4_503_599_627_370_496.0;
 /// Gaps up to this may be rounding errors: 2⁻⁴⁸ R.
 pub(super) const TOUCHING: f64 = 1.0 / 281_474_976_710_656.0;
 

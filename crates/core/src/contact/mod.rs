@@ -7,9 +7,10 @@ mod lanes;
 mod pair;
 mod plane;
 
+pub(crate) use certify::INVISIBLE;
 pub(crate) use first::{Fall, FirstContact, NoContact};
 pub(crate) use lanes::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
 };
-pub(crate) use pair::{Between, PairDeparture, PairFlight, PairSearch, PairTouch};
+pub(crate) use pair::{BallGaps, Between, PairDeparture, PairFlight, PairSearch, PairTouch};
 pub(crate) use plane::Departure;

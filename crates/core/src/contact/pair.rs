@@ -23,9 +23,11 @@
 
 use super::certify::INVISIBLE;
 use super::plane::GapExpansion;
-use crate::math::{Symmetric, Vector};
+use crate::math::{Symmetric, Vector, Vectors};
 use crate::motion::{BodyFrame, BodyPose, Turn};
 use crate::shape::{Feature, Piece, PieceKind, Top};
+use crate::simd::Pack;
+use pulp::Simd;
 
 /// Most steps of a search.
 const MOST_STEPS: usize = 1 << 20;
@@ -88,6 +90,19 @@ pub(crate) struct BallGap {
     bound: f64,
 }
 
+/// [`BallGap`] in each lane, of two balls.
+#[derive(Clone, Copy)]
+pub(crate) struct BallGaps<S: Simd> {
+    pub width: Pack<S, 1>,
+    pub rate: Pack<S, 1>,
+    /// w² over the distance of the centres, by which f bends at least.
+    pub bent: Pack<S, 1>,
+    /// M.
+    pub bound: Pack<S, 1>,
+    distance: Pack<S, 1>,
+    spread: Pack<S, 1>,
+}
+
 /// A plane between two parts, from the second to the first: **n** and **n**′, the part that it leaves between them, and where they touch it.
 struct Parting<'a> {
     normal: Vector,
@@ -115,6 +130,43 @@ impl BallGap {
         } else {
             root(self.bound).max(until)
         }
+    }
+}
+
+impl<S: Simd> BallGaps<S> {
+    /// The gaps of balls whose centres differ by **y**, which changes at a rate and has a bounded acceleration, and the sum of their radii.
+    #[inline(always)]
+    pub fn new(y: Vectors<S, 1>, change: Vectors<S, 1>, radii: f64, bound: Pack<S, 1>) -> Self {
+        let distance = y.dot(y).sqrt();
+        let part = 1.0 / distance;
+        let rate = y.dot(change) * part;
+        let spread = (change.dot(change) - rate * rate).max(0.0);
+        Self {
+            width: distance - radii,
+            rate,
+            bent: spread * part,
+            bound,
+            distance,
+            spread,
+        }
+    }
+
+    /// [`BallGap::step`], where `shortest` is a time in which no gap changes visibly if its rate is 0.
+    #[inline(always)]
+    pub fn step(&self, shortest: Pack<S, 1>) -> Pack<S, 1> {
+        let zero = self.width * 0.0;
+        let (width, speed) = (self.width.max(0.0), self.rate.max(-self.rate));
+        let closes = self.rate.lt(0.0);
+        let (square, twice) = (speed * speed, width + width);
+        let whole = speed + twice.mul_add(self.bound, square).sqrt();
+        let root = closes.select(twice, whole) / closes.select(whole, self.bound);
+        let until = (self.distance + self.distance) * speed / (square + self.spread);
+        let beyond = twice.mul_add(self.bound - self.bent, square);
+        let bent = twice / (speed + beyond.max(0.0).sqrt());
+        // Where the parabola has no root, nothing touches while it holds.
+        let within = bent.le(until) & zero.le(beyond);
+        let closing = within.select(bent, root.max(until));
+        closes.select(closing, root.max(shortest))
     }
 }
 

@@ -14,13 +14,13 @@ mod moments;
 
 pub use moments::{BIN, BINS, GAS_KIND, GAS_WHOLE};
 
-use crate::contact::Between;
 use crate::law::Law;
 use crate::math::{Quaternion, Vector};
 use crate::pair::{
-    Draws, Ending, Following, FreeBody, PairState, Partner, Trouble, approach, failed, normals,
+    Approach, DrawRows, Ending, Follower, FreeBody, Outcome, PairState, Partner, Trouble, approach,
+    failed, normals,
 };
-use crate::random::{of_gas, of_impact};
+use crate::random::{of_candidate, of_candidates, of_impact};
 use crate::simd::Level;
 use crate::threads::{Monitor, Resources};
 use crate::{Error, memory};
@@ -162,21 +162,17 @@ impl Gas<'_> {
                 if batch >= self.batches || monitor.is_cancelled() {
                     return Ok(());
                 }
-                let mut gas = Batch::new(self, batch)?;
                 let mut store = stores
                     .as_ref()
                     .map(|all| all[batch].lock().expect("nobody panics who holds it"));
-                if let Some(store) = &store {
-                    gas.restore(store);
-                }
-                Level::run_scalar(FollowedGas {
-                    gas: &mut gas,
+                let gas = Level::run_scalar(FollowedGas {
+                    gas: self,
+                    number: batch,
+                    store: store.as_mut().map(|store| &mut ***store),
                     law,
+                    level: resources.level,
                     monitor,
                 })?;
-                if let Some(store) = &mut store {
-                    gas.save(store);
-                }
                 let mut results = results.lock().expect("nobody panics who holds it");
                 let (rows, states) = &mut *results;
                 rows[batch * size..][..gas.rows.len()].copy_from_slice(&gas.rows);
@@ -258,8 +254,12 @@ struct Batch<'a> {
     past: f64,
     exponent: i32,
     whole: Whole,
-    /// Draws so far.
-    drawn: u64,
+    /// Candidates so far, and a row of [`AHEAD`] of which the next is one, with the relative speeds of those that are to come.
+    candidates: u64,
+    ahead: Vec<Candidate>,
+    speeds: Vec<f64>,
+    /// Other draws since the last candidate.
+    drawn: u32,
     /// The majorant of u, the time until which it holds, and candidates since it was found.
     fastest: f64,
     until: f64,
@@ -268,21 +268,47 @@ struct Batch<'a> {
     slowest: f64,
     /// Looks so far.
     rows: Vec<f64>,
-    between: Vec<Between>,
+    /// Encounters that are not followed yet, for each two kinds, their number, and a bit for each particle that takes part.
+    waiting: Vec<Waiting>,
+    waits: usize,
+    taken: Vec<u64>,
 }
 
+/// Encounters of two kinds that are followed together: each two particles, the number of the candidate, and the time.
+#[derive(Default)]
+struct Waiting {
+    pairs: Vec<([usize; 2], u64, f64)>,
+    approaches: Vec<Approach>,
+}
+
+/// Two particles that may meet, and a number to decide.
+#[derive(Clone, Copy)]
+struct Candidate {
+    pair: [usize; 2],
+    chance: f64,
+}
+
+/// Candidates that are drawn at once: what they need of memory is fetched at once, too.
+const AHEAD: u64 = 64;
+/// Most encounters that wait to be followed together.
+const TOGETHER: usize = 64;
+
+/// Particles whose random numbers are drawn at once at the beginning.
+const DRAWN: usize = 256;
+
 /// Numbers of a batch in a store beside its looks and its particles, and of the rotation of a particle.
-const NUMBERS: usize = 9 + GAS_WHOLE.len() - 2;
+const NUMBERS: usize = 10 + GAS_WHOLE.len() - 2;
 const ROTATION: usize = 8;
 
 impl<'a> Batch<'a> {
     /// Attitudes uniform on SO(3), velocities and ω of Maxwellians, of which the mean is taken off and whose energies are those of the temperatures.
+    #[inline(always)]
     fn new(gas: &'a Gas<'a>, number: usize) -> Result<Self, Error> {
         let count = gas.each();
         let mut velocities = memory::empty("velocities of a gas", count)?;
         let mut rotations = memory::empty("rotations of a gas", count)?;
         let heated = if gas.heating > 0.0 { count } else { 0 };
-        let mut ends = Vec::new();
+        let (mut ends, mut rows) = (Vec::new(), DrawRows::new(0, 0, 0));
         for (order, kind) in gas.kinds.iter().enumerate() {
             let body = kind.body;
             let start = velocities.len();
@@ -297,9 +323,12 @@ impl<'a> Batch<'a> {
                 ends.push(velocities.len());
                 continue;
             }
+            let index = ((number * gas.kinds.len() + order) as u64) << 40;
             for i in 0..each {
-                let index = ((number * gas.kinds.len() + order) as u64) << 40 | i as u64;
-                let mut draws = Draws::new(gas.seed, index);
+                if i % DRAWN == 0 {
+                    rows = DrawRows::new(gas.seed, index | i as u64, DRAWN.min(each - i));
+                }
+                let mut draws = rows.row(i % DRAWN);
                 let attitude = draws.attitude();
                 let [x, y, z] = draws.normals();
                 let thermal = (kind.translational * body.inverse_mass).sqrt();
@@ -313,8 +342,8 @@ impl<'a> Batch<'a> {
             settle(&mut velocities[start..], &mut rotations[start..], kind);
             ends.push(velocities.len());
         }
-        let largest = gas.kinds.iter().map(|kind| kind.body.pieces.len()).max();
-        let parts = largest.unwrap_or(0);
+        let mut waiting = Vec::new();
+        waiting.resize_with(gas.kinds.len() * gas.kinds.len(), Waiting::default);
         Ok(Self {
             gas,
             number,
@@ -326,34 +355,93 @@ impl<'a> Batch<'a> {
             past: 0.0,
             exponent: 0,
             whole: Whole::default(),
+            candidates: 0,
+            ahead: Vec::new(),
+            speeds: Vec::new(),
             drawn: 0,
             fastest: 0.0,
             until: 0.0,
             since: count,
             slowest: 0.0,
             rows: memory::empty("looks at a gas", (gas.samples + 1) * gas.width())?,
-            between: memory::filled("parts of a pair", Between::default(), parts * parts)?,
+            waiting,
+            waits: 0,
+            taken: memory::zeros("particles of a gas", count.div_ceil(64))?,
         })
+    }
+
+    /// The number of the kind of a particle.
+    #[inline(always)]
+    fn order(&self, particle: usize) -> usize {
+        if self.ends.len() == 1 {
+            return 0;
+        }
+        self.ends.partition_point(|&end| end <= particle)
     }
 
     #[inline(always)]
     fn kind(&self, particle: usize) -> &'a Species<'a> {
-        let gas = self.gas;
-        if let [only] = &gas.kinds[..] {
-            return only;
-        }
-        &gas.kinds[self.ends.partition_point(|&end| end <= particle)]
+        &self.gas.kinds[self.order(particle)]
     }
 
+    /// The number of a candidate among those of all batches.
+    #[inline(always)]
+    fn number(&self, candidate: u64) -> u64 {
+        (self.number as u64) << 48 | candidate
+    }
+
+    /// The next candidate, and its place in the row.
+    #[inline(always)]
+    fn next(&mut self) -> (Candidate, usize) {
+        let place = (self.candidates % AHEAD) as usize;
+        if place == 0 || self.ahead.is_empty() {
+            let mut numbers = [(0.0, 0.0); AHEAD as usize];
+            let first = self.number(self.candidates - place as u64);
+            of_candidates(self.gas.seed, first, &mut numbers);
+            let others = self.velocities.len() - 1;
+            let pairs = self.velocities.len() as f64 * others as f64;
+            self.ahead.clear();
+            for (which, chance) in numbers {
+                let place = (which * pairs) as usize;
+                let (i, j) = (place / others, place % others);
+                let pair = [i, if j < i { j } else { j + 1 }];
+                self.ahead.push(Candidate { pair, chance });
+            }
+            self.approach();
+        }
+        (self.candidates, self.drawn) = (self.candidates + 1, 0);
+        (self.ahead[place], place)
+    }
+
+    /// Finds the relative speeds of the candidates in the row.
+    #[inline(always)]
+    fn approach(&mut self) {
+        self.speeds.clear();
+        for candidate in &self.ahead {
+            let [i, j] = candidate.pair;
+            let u = self.velocities[i] - self.velocities[j];
+            self.speeds.push(u.norm());
+        }
+    }
+
+    /// Others, for its encounter and for noise.
     #[inline(always)]
     fn draw(&mut self) -> (f64, f64) {
         self.drawn += 1;
-        of_gas(self.gas.seed, (self.number as u64) << 48 | self.drawn)
+        of_candidate(self.gas.seed, self.number(self.candidates), self.drawn)
     }
 
     #[inline(always)]
-    fn run(&mut self, law: &Law<'_>, monitor: &Monitor) -> Result<(), Error> {
+    fn run(&mut self, law: &Law<'_>, level: Level, monitor: &Monitor) -> Result<(), Error> {
         let gas = self.gas;
+        let mut followers = Vec::new();
+        for one in &gas.kinds {
+            followers.extend(
+                gas.kinds
+                    .iter()
+                    .map(|two| Follower::new([one.body, two.body], law, level)),
+            );
+        }
         let count = self.velocities.len();
         let each = 0.5 * count as f64 * gas.collisions / gas.samples as f64;
         let reach = gas
@@ -373,6 +461,7 @@ impl<'a> Batch<'a> {
         let mut looks = self.rows.len() / gas.width();
         while looks <= gas.samples {
             if self.since == count || self.clock > self.until {
+                self.follow(&mut followers, law)?;
                 if monitor.is_cancelled() {
                     return Ok(());
                 }
@@ -385,18 +474,22 @@ impl<'a> Batch<'a> {
                     self.until = self.clock + deviation * deviation / noise;
                 }
                 self.since = 0;
+                self.approach();
             }
             self.since += 1;
             // n/N is 1/V, and half of the ordered pairs are the pairs.
             self.clock += 2.0 / (gas.density / count as f64 * pairs * area * self.fastest);
-            let (which, chance) = self.draw();
-            let place = (which * pairs) as usize;
-            let (i, j) = (place / (count - 1), place % (count - 1));
-            let j = if j < i { j } else { j + 1 };
-            self.heat(i);
-            self.heat(j);
-            let u = self.velocities[i] - self.velocities[j];
-            let speed = u.norm();
+            let (Candidate { pair, chance }, place) = self.next();
+            let [i, j] = pair;
+            if self.is_taken(i) || self.is_taken(j) {
+                self.follow(&mut followers, law)?;
+            }
+            if gas.heating > 0.0 {
+                self.heat(i);
+                self.heat(j);
+                self.speeds[place] = (self.velocities[i] - self.velocities[j]).norm();
+            }
+            let speed = self.speeds[place];
             let bodies = [self.kind(i).body, self.kind(j).body];
             let both = bodies[0].reach + bodies[1].reach;
             let share = speed / self.fastest * (both * both / (4.0 * reach * reach));
@@ -406,7 +499,12 @@ impl<'a> Batch<'a> {
             if chance >= share {
                 continue;
             }
-            self.meet(law, [i, j], bodies, u, both)?;
+            self.meet(pair, bodies, both)?;
+            // Not more than may be followed before the next look.
+            let left = each * looks as f64 - self.whole.collisions;
+            if self.waits == TOGETHER || self.waits as f64 >= left {
+                self.follow(&mut followers, law)?;
+            }
             while looks <= gas.samples && self.whole.collisions >= each * looks as f64 {
                 self.look();
                 looks += 1;
@@ -421,8 +519,11 @@ impl<'a> Batch<'a> {
     /// Finds the largest speed. Where it has fallen far, takes off what rounding has given to the centre of mass; where it is faint, multiplies velocities, but for the spins of balls that contacts do not turn, and turns back the clock.
     #[inline(always)]
     fn lift(&mut self) -> f64 {
-        let squares = self.velocities.iter().map(|v| v.dot(*v));
-        let most = squares.fold(0.0, f64::max).sqrt();
+        let mut most: f64 = 0.0;
+        for v in &self.velocities {
+            most = most.max(v.dot(*v));
+        }
+        let most = most.sqrt();
         if self.slowest == 0.0 {
             self.slowest = FAR * most;
         }
@@ -466,7 +567,8 @@ impl<'a> Batch<'a> {
             self.clock,
             self.past,
             f64::from(self.exponent),
-            self.drawn as f64,
+            self.candidates as f64,
+            f64::from(self.drawn),
             self.fastest,
             self.until,
             self.since as f64,
@@ -499,6 +601,7 @@ impl<'a> Batch<'a> {
             clock,
             past,
             exponent,
+            candidates,
             drawn,
             fastest,
             until,
@@ -510,10 +613,10 @@ impl<'a> Batch<'a> {
             return;
         }
         (self.clock, self.past, self.exponent) = (clock, past, exponent as i32);
-        (self.drawn, self.fastest, self.until, self.since) =
-            (drawn as u64, fastest, until, since as usize);
+        (self.candidates, self.drawn) = (candidates as u64, drawn as u32);
+        (self.fastest, self.until, self.since) = (fastest, until, since as usize);
         self.slowest = slowest;
-        self.whole = Whole::of(&numbers[9..]);
+        self.whole = Whole::of(&numbers[10..]);
         let (rows, rest) = rest.split_at((self.gas.samples + 1) * self.gas.width());
         self.rows.extend(&rows[..looks as usize]);
         let (particles, heated) = rest.split_at(self.velocities.len() * (3 + ROTATION));
@@ -529,16 +632,16 @@ impl<'a> Batch<'a> {
         self.heated.copy_from_slice(heated);
     }
 
+    /// True if a particle takes part in an encounter that is not followed yet.
     #[inline(always)]
-    fn meet(
-        &mut self,
-        law: &Law<'_>,
-        pair: [usize; 2],
-        bodies: [&Partner; 2],
-        u: Vector,
-        reach: f64,
-    ) -> Result<(), Error> {
-        let gas = self.gas;
+    fn is_taken(&self, particle: usize) -> bool {
+        self.taken[particle / 64] >> (particle % 64) & 1 == 1
+    }
+
+    /// Lets two particles meet at the next [`Self::follow`].
+    #[inline(always)]
+    fn meet(&mut self, pair: [usize; 2], bodies: [&Partner; 2], reach: f64) -> Result<(), Error> {
+        let u = self.velocities[pair[0]] - self.velocities[pair[1]];
         let speed = u.norm();
         let direction = u / speed;
         let (square, around) = self.draw();
@@ -547,82 +650,128 @@ impl<'a> Batch<'a> {
             self.free(pair[0], apart),
             self.free(pair[1], Vector::default()),
         ];
-        let turns = pair.map(|i| self.kind(i).turned != [false; 3]);
-        let mut spins: f64 = 0.0;
-        for (i, state) in states.iter_mut().enumerate() {
-            if !turns[i] {
-                state.spin = Vector::default(); // that of a smooth ball, which nothing depends on
+        let (mut spins, mut passed): (f64, _) = (0.0, [0.0; 2]);
+        for (i, particle) in pair.into_iter().enumerate() {
+            if self.kind(particle).turned == [false; 3] {
+                states[i].spin = Vector::default(); // that of a smooth ball, which nothing depends on
                 continue;
             }
-            let body = bodies[i];
-            let i = pair[i];
-            spins = spins.max(state.spin.norm() * reach);
-            let passed = match gas.phase {
-                Phase::Time => self.clock - self.rotations[i].time,
-                Phase::Uniform => {
-                    let spin = state.spin.norm();
-                    if spin > 0.0 {
-                        self.draw().0 * TURNS * TAU / spin
-                    } else {
-                        0.0
-                    }
-                }
+            let spin = states[i].spin.norm();
+            spins = spins.max(spin * reach);
+            passed[i] = match self.gas.phase {
+                _ if spin == 0.0 => 0.0,
+                Phase::Time => within(self.clock - self.rotations[particle].time, spin),
+                Phase::Uniform => self.draw().0 * TURNS * TAU / spin,
             };
-            turn(state, body, passed);
-            self.rotations[i] = ParticleRotation::new(state, self.clock);
         }
         let balls = bodies.iter().all(|body| body.is_ball());
         if spins > if balls { LOST_SPIN } else { FASTEST_SPIN } * speed {
             return Err(self.too_hot());
         }
-        // The number of the encounter, for materials whose coefficient scatters.
-        let number = (self.number as u64) << 48 | self.drawn;
-        let seed = gas.seed;
-        let between = &mut self.between[..bodies[0].pieces.len() * bodies[1].pieces.len()];
-        between.fill(Between::default());
-        let outcome = Level::run_scalar(Following {
-            bodies,
-            law,
-            states,
-            chance: &|contact| of_impact(seed, number, contact),
-            hit: &mut |_: &_| {},
-            between,
-        });
-        let outcome = outcome.map_err(|trouble| match trouble {
-            Trouble::Unconverged if spins > FAST_SPIN * speed => self.too_hot(),
-            trouble => failed(law, trouble, (seed, number), 0),
-        })?;
+        let kinds = pair.map(|i| self.order(i));
+        let waiting = &mut self.waiting[kinds[0] * self.ends.len() + kinds[1]];
+        waiting.pairs.push((pair, self.candidates - 1, self.clock));
+        waiting.approaches.push(Approach { states, passed });
+        for i in pair {
+            self.taken[i / 64] |= 1 << (i % 64);
+        }
+        self.waits += 1;
+        Ok(())
+    }
+
+    /// Follows the encounters that wait.
+    #[inline(always)]
+    fn follow(&mut self, followers: &mut [Follower<'_, '_>], law: &Law<'_>) -> Result<(), Error> {
+        if self.waits == 0 {
+            return Ok(());
+        }
+        let mut ended = Ok(());
+        for (i, follower) in followers.iter_mut().enumerate() {
+            let mut waiting = std::mem::take(&mut self.waiting[i]);
+            let Waiting { pairs, approaches } = &mut waiting;
+            let (seed, batch) = (self.gas.seed, self.number(0));
+            let chance = |k: usize, contact| of_impact(seed, batch | pairs[k].1, contact);
+            let ends = follower.follow(approaches, &chance, None);
+            for ((&(pair, candidate, time), approach), end) in
+                pairs.iter().zip(&*approaches).zip(ends)
+            {
+                match end {
+                    Ok(outcome) => self.met(pair, approach, outcome, time),
+                    Err(trouble) if ended.is_ok() => {
+                        ended = Err(self.lost(trouble.clone(), approach, law, batch | candidate));
+                    }
+                    Err(_) => {}
+                }
+                for i in pair {
+                    self.taken[i / 64] &= !(1 << (i % 64));
+                }
+            }
+            pairs.clear();
+            approaches.clear();
+            self.waiting[i] = waiting;
+        }
+        self.waits = 0;
+        self.approach();
+        ended
+    }
+
+    /// What an encounter at a time does to two particles.
+    #[inline(always)]
+    fn met(
+        &mut self,
+        pair: [usize; 2],
+        approach: &Approach,
+        outcome: &Outcome<FreeBody>,
+        time: f64,
+    ) {
         self.whole.attempts += 1.0;
         self.whole.steps += outcome.steps as f64;
         if outcome.contacts == 0 {
-            return Ok(());
+            return;
         }
         self.whole.collisions += 1.0;
         self.whole.contacts += outcome.contacts as f64;
         if outcome.ending == Ending::Collapse {
             self.whole.collapses += 1.0;
         }
+        let bodies = pair.map(|i| self.kind(i).body);
         let energy = |states: &[FreeBody; 2]| {
             let [one, two] = states;
             one.energy(bodies[0]) + two.energy(bodies[1])
         };
-        let (before, after) = (energy(&states), energy(&outcome.states));
+        let (before, after) = (energy(&approach.states), energy(&outcome.states));
         if after > before * (1.0 + CREATED) {
             self.whole.creating += 1.0;
             self.whole.created += (after - before) * 2f64.powi(-2 * self.exponent);
         }
-        for (i, state) in pair.into_iter().zip(&outcome.states) {
+        for (i, (state, before)) in pair
+            .into_iter()
+            .zip(outcome.states.iter().zip(&approach.states))
+        {
             self.velocities[i] = state.velocity;
             let turned = self.kind(i).turned;
             if turned != [false; 3] {
                 // Rounding would turn a body about the others, too, and that would outlast all else.
-                let (own, before) = (state.spin.parts(), self.rotations[i].spin.parts());
+                let (own, before) = (state.spin.parts(), before.spin.parts());
                 let [x, y, z] = std::array::from_fn(|k| if turned[k] { own[k] } else { before[k] });
                 let spin = Vector::new(x, y, z);
-                self.rotations[i] = ParticleRotation::new(&FreeBody { spin, ..*state }, self.clock);
+                self.rotations[i] = ParticleRotation::new(&FreeBody { spin, ..*state }, time);
             }
         }
-        Ok(())
+    }
+
+    /// The error of an encounter that cannot be followed.
+    #[cold]
+    fn lost(&self, trouble: Trouble, from: &Approach, law: &Law<'_>, number: u64) -> Error {
+        let [one, two] = &from.states;
+        let speed = (one.velocity - two.velocity).norm();
+        let spin = one.spin.norm().max(two.spin.norm());
+        match trouble {
+            Trouble::Unconverged if spin * one.position.norm() > FAST_SPIN * speed => {
+                self.too_hot()
+            }
+            trouble => failed(law, trouble, (self.gas.seed, number), 0),
+        }
     }
 
     /// The error where rotation outruns translation.
@@ -698,7 +847,8 @@ impl<'a> Batch<'a> {
             let mut sums = SpeciesSums::default();
             for i in start..end {
                 let mut state = self.free(i, Vector::default());
-                turn(&mut state, kind.body, self.clock - self.rotations[i].time);
+                let passed = self.clock - self.rotations[i].time;
+                state.turn(kind.body, within(passed, state.spin.norm()));
                 self.rotations[i] = ParticleRotation::new(&state, self.clock);
                 sums.add(kind, &state);
             }
@@ -725,18 +875,14 @@ impl ParticleRotation {
     }
 }
 
-/// Turns a body as it does in a time, of which whole turns beyond all that a time can say are left out.
+/// A time, without whole turns beyond all that a time can say.
 #[inline(always)]
-fn turn(state: &mut FreeBody, body: &Partner, time: f64) {
-    let spin = state.spin.norm();
-    state.turn(
-        body,
-        if spin * time > LOST {
-            time % (LOST / spin)
-        } else {
-            time
-        },
-    );
+fn within(time: f64, spin: f64) -> f64 {
+    if spin * time > LOST {
+        time % (LOST / spin)
+    } else {
+        time
+    }
 }
 
 /// The state of a particle from its numbers.
@@ -756,27 +902,42 @@ fn joined(state: PairState) -> [f64; STATE] {
     [vx, vy, vz, a, b, c, w, x, y, z]
 }
 
-/// A gas that is followed; one encounter has no packs.
+/// One of the gases, which is followed from the beginning or from what is in the store, and put there; what is done here has no packs.
 struct FollowedGas<'a, 'b, 'c> {
-    gas: &'a mut Batch<'b>,
-    law: &'a Law<'c>,
-    monitor: &'a Monitor,
+    gas: &'a Gas<'a>,
+    number: usize,
+    store: Option<&'b mut [f64]>,
+    law: &'b Law<'c>,
+    level: Level,
+    monitor: &'b Monitor,
 }
 
-impl WithSimd for FollowedGas<'_, '_, '_> {
-    type Output = Result<(), Error>;
+impl<'a> WithSimd for FollowedGas<'a, '_, '_> {
+    type Output = Result<Batch<'a>, Error>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        self.gas.run(self.law, self.monitor)
+        let mut batch = Batch::new(self.gas, self.number)?;
+        if let Some(store) = &self.store {
+            batch.restore(store);
+        }
+        batch.run(self.law, self.level, self.monitor)?;
+        if let Some(store) = self.store {
+            batch.save(store);
+        }
+        Ok(batch)
     }
 }
 
 /// Takes the mean velocity off, and scales velocities and the parts of ω to the energies of the temperatures.
+#[inline(always)]
 fn settle(velocities: &mut [Vector], rotations: &mut [ParticleRotation], kind: &Species<'_>) {
     let count = velocities.len() as f64;
     let body = kind.body;
-    let sum = velocities.iter().fold(Vector::default(), |sum, &v| sum + v);
+    let mut sum = Vector::default();
+    for &v in velocities.iter() {
+        sum = sum + v;
+    }
     let mean = sum / count;
     let mut square = 0.0;
     for v in velocities.iter_mut() {

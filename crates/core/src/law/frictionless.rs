@@ -26,6 +26,16 @@ impl Frictionless {
         creates_energy: Creation::Never,
         from_rest: Some([Slip::Free, Slip::Free]),
     };
+
+    /// P_n, where the coefficient is ε_n, from the speed of approach and K_nn.
+    #[inline(always)]
+    pub(crate) fn impulse<S: Simd>(
+        coefficient: Pack<S, 1>,
+        speed: Pack<S, 1>,
+        compliance: Pack<S, 1>,
+    ) -> Pack<S, 1> {
+        coefficient.mul_add(speed, speed) / compliance
+    }
 }
 
 impl ImpulseRule for Frictionless {
@@ -38,7 +48,7 @@ impl ImpulseRule for Frictionless {
         let speed = contact.approach_speed();
         Response {
             impulse: Components {
-                normal: normal.mul_add(speed, speed) / contact.compliance.nn(),
+                normal: Self::impulse(normal, speed, contact.compliance.nn()),
                 along: speed * 0.0,
                 across: speed * 0.0,
             },

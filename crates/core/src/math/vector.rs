@@ -122,6 +122,16 @@ pub(crate) struct Vectors<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> Vectors<S, K> {
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn splat(simd: S, vector: Vector) -> Self {
+        Self {
+            x: Pack::splat(simd, vector.x),
+            y: Pack::splat(simd, vector.y),
+            z: Pack::splat(simd, vector.z),
+        }
+    }
+
     /// Scalar product.
     #[inline(always)]
     pub fn dot(self, b: Self) -> Pack<S, K> {

@@ -14,7 +14,7 @@ use crate::{COLLAPSE_RUN, Fault};
 use pulp::{Simd, WithSimd};
 
 /// M T² over the sum of the reaches below which a flight of duration T counts as unresolved.
-const UNRESOLVED: f64 = 8.0 / 8_796_093_022_208.0;
+pub(super) const UNRESOLVED: f64 = 8.0 / 8_796_093_022_208.0;
 
 /// Lasting contacts of an encounter after which it is given up.
 const MOST_LASTING: u64 = 8;
@@ -132,6 +132,16 @@ pub fn narrowest(bodies: [&Partner; 2], states: &[PairState; 2]) -> f64 {
     search.narrowest(&mut flight(bodies, &states))
 }
 
+/// The end of an encounter, or why it cannot be followed.
+pub(crate) type End = Result<Outcome<FreeBody>, Trouble>;
+
+/// Two bodies that are about to meet, and the time for which each has turned freely before.
+#[derive(Clone, Copy)]
+pub(crate) struct Approach {
+    pub states: [FreeBody; 2],
+    pub passed: [f64; 2],
+}
+
 /// An encounter; it has no packs. It is one function for all who follow encounters: inlined, it would be compiled for each of them.
 pub(crate) struct Following<'a, 'b> {
     pub bodies: [&'a Partner; 2],
@@ -144,7 +154,7 @@ pub(crate) struct Following<'a, 'b> {
 }
 
 impl WithSimd for Following<'_, '_> {
-    type Output = Result<Outcome<FreeBody>, Trouble>;
+    type Output = End;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
@@ -256,7 +266,7 @@ impl Outcome<FreeBody> {
 
 impl Following<'_, '_> {
     #[inline(always)]
-    fn follow(mut self) -> Result<Outcome<FreeBody>, Trouble> {
+    fn follow(mut self) -> End {
         let bodies = self.bodies;
         let reach = bodies[0].reach + bodies[1].reach;
         let search = PairSearch {

@@ -1,17 +1,15 @@
 //! Many encounters, on all cores: each depends on the seed and its number alone.
 
-use super::encounter::{Following, FreeBody, Hit, Outcome, PairState, Trouble, narrowest};
-use super::{Partner, sample::Encounters};
-use crate::Error;
-use crate::contact::Between;
+use super::encounter::{Approach, FreeBody, Hit, Outcome, PairState, Trouble, narrowest};
+use super::{Follower, Partner, sample::DrawRows, sample::Encounters};
 use crate::law::Law;
 use crate::math::Vector;
 use crate::random::of_impact;
 use crate::simd::Level;
 use crate::simd::elementary::angle;
 use crate::threads::{Monitor, Resources};
+use crate::{Error, memory};
 use pulp::{Simd, WithSimd};
-use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -23,7 +21,7 @@ const OVERLAP: f64 = 1e-9;
 /// A recorded variable: its name, its description, its unit, and the number of its components, for each of both bodies or by itself.
 pub type PairVariable = (&'static str, &'static str, &'static str, usize, bool);
 
-/// The variables of an encounter, in the order of a row.
+/// The variables of an encounter; those of the states are the last.
 pub const ENCOUNTER: &[PairVariable] = &[
     ("contacts", "number of contacts", "", 1, false),
     ("ending", "how the encounter ended", "", 1, false),
@@ -203,119 +201,119 @@ pub const HIT: &[PairVariable] = &[
     ),
 ];
 
-/// Recorded encounters, row by row, and their contacts one after the other.
+/// The variables of [`ENCOUNTER`] that come before those that only states need.
+const WITHOUT_STATES: usize = 18;
+
+/// Recorded encounters, variable by variable, and their contacts one after the other.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PairTable {
-    /// Rows of [`ENCOUNTER`].
-    pub encounters: Vec<f64>,
+    /// Each of [`ENCOUNTER`], for all encounters.
+    pub encounters: Vec<Vec<f64>>,
     /// Rows of [`HIT`].
     pub hits: Vec<f64>,
 }
 
+impl PairTable {
+    /// The numbers of a variable of an encounter.
+    ///
+    /// # Panics
+    /// If there is none with this name.
+    pub fn of(&self, name: &str, encounter: usize) -> &[f64] {
+        let mut variables = self.encounters.iter().zip(ENCOUNTER);
+        let (column, variable) = variables
+            .find(|(_, variable)| variable.0 == name)
+            .expect("a recorded variable");
+        let width = width(variable);
+        &column[encounter * width..][..width]
+    }
+}
+
 /// An encounter that was followed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Encountered {
+struct Encountered {
     /// The bodies before.
-    pub before: [PairState; 2],
+    before: [PairState; 2],
     /// The end.
-    pub outcome: Outcome,
+    outcome: Outcome,
     /// The first contact, if there was one.
-    pub first: Option<Hit>,
+    first: Option<Hit>,
+}
+
+/// The numbers of a variable of both bodies.
+fn width(&(.., parts, each): &PairVariable) -> usize {
+    parts * (1 + usize::from(each))
 }
 
 impl Encounters<'_> {
-    /// Follows all encounters, drawn or given; with `contacts` each contact is recorded, too.
+    /// Follows all encounters, drawn or given; with `states` the places and attitudes are recorded, and with `contacts` each contact, too.
     ///
     /// # Errors
-    /// As [`Encounters::check`], for given bodies that overlap, and if an encounter cannot be followed.
+    /// As [`Encounters::check`], for given bodies that overlap, for more than fits into memory, and if an encounter cannot be followed.
     pub fn record(
         &self,
         law: &Law<'_>,
         given: Option<&[[PairState; 2]]>,
-        contacts: bool,
+        [states, contacts]: [bool; 2],
         resources: Resources,
         monitor: &Monitor,
     ) -> Result<PairTable, Error> {
-        let tables = self.blocks(
-            law,
-            given,
-            resources,
-            monitor,
-            |found, hits, table: &mut PairTable| {
-                self.write(found, &mut table.encounters);
-                if contacts {
-                    for hit in hits {
-                        let ([n, p, i], [before, after]) = (
-                            [hit.normal, hit.point, hit.impulse].map(Vector::parts),
-                            hit.speeds,
-                        );
-                        table.hits.push(hit.time);
-                        table
-                            .hits
-                            .extend(n.into_iter().chain(p).chain(i).chain([before, after]));
-                    }
-                }
-            },
-        )?;
-        let mut all = PairTable::default();
-        all.encounters
-            .reserve_exact(tables.iter().map(|table| table.encounters.len()).sum());
-        all.hits
-            .reserve_exact(tables.iter().map(|table| table.hits.len()).sum());
-        for table in tables {
-            all.encounters.extend(table.encounters);
-            all.hits.extend(table.hits);
-        }
-        Ok(all)
-    }
-
-    /// Follows all encounters in blocks, each of which is summed up by itself, in their order.
-    pub(super) fn blocks<T: Default + Send>(
-        &self,
-        law: &Law<'_>,
-        given: Option<&[[PairState; 2]]>,
-        resources: Resources,
-        monitor: &Monitor,
-        add: impl Fn(&Encountered, &[Hit], &mut T) + Sync,
-    ) -> Result<Vec<T>, Error> {
         if given.is_none() {
             self.check()?;
         }
-        let (count, next) = (self.count.div_ceil(BLOCK), AtomicUsize::new(0));
-        let done = Mutex::new(Vec::new());
+        let variables = if states {
+            ENCOUNTER
+        } else {
+            &ENCOUNTER[..WITHOUT_STATES]
+        };
+        let column = |variable| memory::zeros("encounters", self.count * width(variable));
+        let mut encounters: Vec<Vec<f64>> =
+            variables.iter().map(column).collect::<Result<_, _>>()?;
+        // Each block writes into its own part of each column.
+        let count = self.count.div_ceil(BLOCK);
+        let mut blocks: Vec<Vec<&mut [f64]>> = Vec::with_capacity(count);
+        blocks.resize_with(count, Vec::new);
+        for (column, variable) in encounters.iter_mut().zip(variables) {
+            for (part, block) in column.chunks_mut(BLOCK * width(variable)).zip(&mut blocks) {
+                block.push(part);
+            }
+        }
+        let blocks: Vec<_> = blocks.into_iter().map(Mutex::new).collect();
+        let (next, all) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
         let work = |_| {
-            let mut between =
-                vec![Between::default(); self.bodies[0].pieces.len() * self.bodies[1].pieces.len()];
+            let mut follower = Follower::new(self.bodies, law, resources.level);
+            let mut room = vec![Vec::new(); BLOCK];
             loop {
                 let number = next.fetch_add(1, Ordering::Relaxed);
                 if number >= count || monitor.is_cancelled() {
                     return Ok(());
                 }
                 let rows = number * BLOCK..self.count.min((number + 1) * BLOCK);
-                let size = rows.len() as u64;
-                let mut sum = T::default();
-                let block = EncounterBlock {
+                let size = rows.len();
+                let given = given.map(|given| &given[rows.clone()]);
+                let mut columns = blocks[number].lock().expect("nobody panics who holds it");
+                let hits = Level::run_scalar(EncounterBlock {
                     encounters: self,
+                    follower: &mut follower,
                     law,
                     given,
-                    rows,
-                    between: &mut between,
-                    add: &add,
-                    sum: &mut sum,
-                };
-                Level::run_scalar(block)?;
-                done.lock()
+                    start: rows.start,
+                    contacts,
+                    hits: &mut room,
+                    columns: &mut columns,
+                })?;
+                all.lock()
                     .expect("nobody panics who holds it")
-                    .push((number, sum));
-                monitor.add_finished(size);
+                    .push((number, hits));
+                monitor.add_finished(size as u64);
             }
         };
         let ended: Result<Vec<()>, Error> =
             resources.each_thread(count, work)?.into_iter().collect();
         ended?;
-        let mut done = done.into_inner().expect("nobody panics who holds it");
-        done.sort_by_key(|&(number, _)| number);
-        Ok(done.into_iter().map(|(_, sum)| sum).collect())
+        drop(blocks);
+        let mut all = all.into_inner().expect("nobody panics who holds it");
+        all.sort_by_key(|&(number, _)| number);
+        let hits = all.into_iter().flat_map(|(_, hits)| hits).collect();
+        Ok(PairTable { encounters, hits })
     }
 
     /// A row of [`ENCOUNTER`].
@@ -396,63 +394,98 @@ impl Encounters<'_> {
     }
 }
 
-/// Some encounters, each of which adds to a sum; one has no packs.
-struct EncounterBlock<'a, 'b, T, F> {
+/// Some encounters, which are written into their columns; what is done here has no packs. Returns rows of [`HIT`], if they are asked for.
+struct EncounterBlock<'a, 'b, 'c, 'd> {
     encounters: &'a Encounters<'a>,
-    law: &'a Law<'b>,
+    follower: &'a mut Follower<'c, 'd>,
+    law: &'a Law<'d>,
     given: Option<&'a [[PairState; 2]]>,
-    rows: Range<usize>,
-    between: &'a mut [Between],
-    add: &'a F,
-    sum: &'a mut T,
+    start: usize,
+    contacts: bool,
+    /// Room for the contacts of each.
+    hits: &'a mut [Vec<Hit>],
+    columns: &'a mut [&'b mut [f64]],
 }
 
-impl<T, F: Fn(&Encountered, &[Hit], &mut T)> WithSimd for EncounterBlock<'_, '_, T, F> {
-    type Output = Result<(), Error>;
+impl WithSimd for EncounterBlock<'_, '_, '_, '_> {
+    type Output = Result<Vec<f64>, Error>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let Encounters {
-            bodies,
-            first,
-            seed,
-            ..
-        } = *self.encounters;
-        let mut hits = Vec::new();
-        for row in self.rows {
-            let number = first + row as u64;
-            let before = match self.given {
+        let Self {
+            encounters,
+            follower,
+            law,
+            given,
+            start,
+            contacts,
+            hits,
+            columns,
+        } = self;
+        let Encounters { bodies, seed, .. } = *encounters;
+        let size = given.map_or(columns[0].len(), <[_]>::len);
+        let first = encounters.first + start as u64;
+        let mut draws = DrawRows::new(seed, first, size);
+        // Closures would be functions of their own, which are not compiled for fused multiply-add.
+        let mut before = Vec::with_capacity(size);
+        for row in 0..size {
+            let states = match given {
                 Some(given) => given[row],
-                None => self.encounters.draw(number),
+                None => encounters.draw(draws.row(row)),
             };
-            if self.given.is_some() {
-                check_apart(bodies, &before)?;
+            if given.is_some() {
+                check_apart(bodies, &states)?;
             }
-            hits.clear();
-            self.between.fill(Between::default());
-            let outcome = Level::run_scalar(Following {
-                bodies,
-                law: self.law,
-                states: FreeBody::both(bodies, &before),
-                chance: &|contact| of_impact(seed, number, contact),
-                hit: &mut |hit: &Hit| {
-                    hits.truncate(hit.number as usize);
-                    hits.push(*hit);
-                },
-                between: &mut *self.between,
+            before.push(states);
+        }
+        let mut approaches = Vec::with_capacity(size);
+        for states in &before {
+            approaches.push(Approach {
+                states: FreeBody::both(bodies, states),
+                passed: [0.0; 2],
             });
-            let outcome =
-                outcome.map_err(|trouble| failed(self.law, trouble, (seed, number), hits.len()))?;
+        }
+        for hits in hits.iter_mut() {
+            hits.clear();
+        }
+        let mut add = |row: usize, hit: &Hit| {
+            hits[row].truncate(hit.number as usize);
+            hits[row].push(*hit);
+        };
+        let chance = |row, contact| of_impact(seed, first + row as u64, contact);
+        let ends = follower.follow(&approaches, &chance, Some(&mut add));
+        let (mut rows, mut numbers) = (Vec::new(), Vec::new());
+        for (row, (end, before)) in ends.zip(before).enumerate() {
+            let hits = &mut hits[row];
+            let outcome = end
+                .clone()
+                .map_err(|trouble| failed(law, trouble, (seed, first + row as u64), hits.len()))?;
             let outcome = outcome.given(bodies);
             hits.truncate(outcome.contacts as usize);
+            numbers.clear();
             let found = Encountered {
                 before,
                 outcome,
                 first: hits.first().copied(),
             };
-            (self.add)(&found, &hits, self.sum);
+            encounters.write(&found, &mut numbers);
+            let mut rest = &numbers[..];
+            for (column, variable) in columns.iter_mut().zip(ENCOUNTER) {
+                let width = width(variable);
+                let (own, others) = rest.split_at(width);
+                column[row * width..][..width].copy_from_slice(own);
+                rest = others;
+            }
+            for hit in hits.iter().filter(|_| contacts) {
+                let ([n, p, i], [before, after]) = (
+                    [hit.normal, hit.point, hit.impulse].map(Vector::parts),
+                    hit.speeds,
+                );
+                rows.push(hit.time);
+                rows.extend(n.into_iter().chain(p).chain(i).chain([before, after]));
+            }
         }
-        Ok(())
+        Ok(rows)
     }
 }
 

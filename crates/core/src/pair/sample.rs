@@ -7,7 +7,7 @@
 use super::{PairState, Partner};
 use crate::Error;
 use crate::math::{Quaternion, Vector};
-use crate::random::of_encounter;
+use crate::random::of_encounters;
 use crate::simd::elementary::{ln, sincos};
 use std::f64::consts::{PI, TAU};
 
@@ -113,8 +113,7 @@ impl Encounters<'_> {
 
     /// The bodies of an encounter, where they come through the sphere.
     #[inline(always)]
-    pub(super) fn draw(&self, number: u64) -> [PairState; 2] {
-        let mut draws = Draws::new(self.seed, number);
+    pub(super) fn draw(&self, mut draws: Draws<'_>) -> [PairState; 2] {
         let (places, velocities) = if self.bodies[1].is_plane() {
             self.onto_plane(&mut draws)
         } else {
@@ -146,7 +145,7 @@ impl Encounters<'_> {
 
     /// Places and velocities of two bodies; their centre of mass is at the origin.
     #[inline(always)]
-    fn in_space(&self, draws: &mut Draws) -> ([Vector; 2], [Vector; 2]) {
+    fn in_space(&self, draws: &mut Draws<'_>) -> ([Vector; 2], [Vector; 2]) {
         let [one, two] = [self.bodies[0].inverse_mass, self.bodies[1].inverse_mass];
         let reach = self.reach();
         let (height, azimuth) = draws.pair();
@@ -186,7 +185,7 @@ impl Encounters<'_> {
 
     /// Those of a body over a plane.
     #[inline(always)]
-    fn onto_plane(&self, draws: &mut Draws) -> ([Vector; 2], [Vector; 2]) {
+    fn onto_plane(&self, draws: &mut Draws<'_>) -> ([Vector; 2], [Vector; 2]) {
         let velocity = match self.meeting {
             Meeting::Speed(speed) => Vector::new(0.0, 0.0, -speed),
             Meeting::Temperatures(_) => {
@@ -215,27 +214,62 @@ pub(crate) fn approach(u: Vector, across: Vector, b: f64, azimuth: f64) -> Vecto
     across * (b * c) + second * (b * s) - u * back
 }
 
-/// The random numbers of an encounter.
-pub(crate) struct Draws {
+/// The random numbers of successive encounters, or particles of a gas: those of a draw are computed for all of them, when the first asks for it.
+pub(crate) struct DrawRows {
     seed: u64,
-    number: u64,
-    draw: u32,
+    first: u64,
+    rows: usize,
+    numbers: Vec<Vec<(f64, f64)>>,
 }
 
-impl Draws {
-    /// Those of an encounter, or of a particle of a gas.
-    pub fn new(seed: u64, number: u64) -> Self {
+impl DrawRows {
+    pub fn new(seed: u64, first: u64, rows: usize) -> Self {
         Self {
             seed,
-            number,
+            first,
+            rows,
+            numbers: Vec::new(),
+        }
+    }
+
+    /// Those of one of them.
+    #[inline(always)]
+    pub fn row(&mut self, row: usize) -> Draws<'_> {
+        Draws {
+            all: self,
+            row,
             draw: 0,
         }
     }
 
+    #[cold]
+    fn fill(&mut self) {
+        let mut numbers = vec![(0.0, 0.0); self.rows];
+        of_encounters(
+            self.seed,
+            self.first,
+            self.numbers.len() as u32,
+            &mut numbers,
+        );
+        self.numbers.push(numbers);
+    }
+}
+
+/// The random numbers of an encounter.
+pub(crate) struct Draws<'a> {
+    all: &'a mut DrawRows,
+    row: usize,
+    draw: usize,
+}
+
+impl Draws<'_> {
     #[inline(always)]
     pub fn pair(&mut self) -> (f64, f64) {
+        if self.draw == self.all.numbers.len() {
+            self.all.fill();
+        }
         self.draw += 1;
-        of_encounter(self.seed, self.number, self.draw - 1)
+        self.all.numbers[self.draw - 1][self.row]
     }
 
     /// Three normal numbers.

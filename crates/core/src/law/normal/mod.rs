@@ -8,7 +8,7 @@ mod viscoelastic;
 
 pub use plastic::Plastic;
 pub use scattered::Scattered;
-pub(super) use scattered::scattered;
+pub(crate) use scattered::scattered;
 pub use tabulated::{Points, Tabulated};
 pub use viscoelastic::{PADE_ABOVE, PADE_BELOW, Viscoelastic};
 
