@@ -606,7 +606,8 @@ impl WithSimd for InLanes<'_, '_, '_> {
                 closes = look.rate.lt(0.0) & (look.bound * square).le(INVISIBLE * reach);
             }
             all.looks = all.looks + 1.0;
-            all.steps = all.meets.select(all.steps + 1.0, all.steps);
+            let looks = all.meets | Pack::splat(simd, 0.0).lt(all.contacts);
+            all.steps = looks.select(all.steps + 1.0, all.steps);
             let within = best.lt(all.until);
             let touched = active & within & closes;
             let passed = active & !within;
