@@ -5,9 +5,8 @@
 //! the axis is constant, and is added to the attitude at the end. What takes more (contacts that may last or accumulate, a search that does not end soon)
 //! is rare, and left to [`Following`](super::encounter::Following).
 
-use super::Partner;
-use super::encounter::{Approach, End, Ending, FreeBody, Hit, Outcome, UNRESOLVED};
-use super::follow::{Chance, OnHit};
+use super::encounter::{Chance, End, Ending, Hit, OnHit, Outcome, UNRESOLVED};
+use super::partner::{Approach, FreeBody, Partner};
 use crate::contact::{BallGaps, INVISIBLE};
 use crate::law::{Frictionless, Law, Rule, scattered};
 use crate::math::{Quaternion, UNITS, Vector, Vectors};

@@ -3,12 +3,11 @@
 //! An encounter begins where it is given, and ends where the centres are farther apart than the bodies reach and move away from each other. Contacts that
 //! accumulate, or one that is not left, are a lasting contact: without friction it is followed ([`Lasting`]), else it ends the encounter as a collapse.
 
-use super::Partner;
 use super::lasting::Lasting;
-use crate::contact::{Between, PairDeparture, PairFlight, PairSearch, PairTouch};
-use crate::law::{Compliance, Law, Rule};
-use crate::math::{Quaternion, Symmetric, Vector};
-use crate::motion::{BodyPose, Rotation, Turn};
+use super::partner::{FreeBody, PairState, Partner, flight};
+use crate::contact::{Between, PairDeparture, PairSearch, PairTouch};
+use crate::law::{Law, Rule};
+use crate::math::{Quaternion, Vector};
 use crate::simd::Level;
 use crate::{COLLAPSE_RUN, Fault};
 use pulp::{Simd, WithSimd};
@@ -18,19 +17,6 @@ pub(super) const UNRESOLVED: f64 = 8.0 / 8_796_093_022_208.0;
 
 /// Lasting contacts of an encounter after which it is given up.
 const MOST_LASTING: u64 = 8;
-
-/// Position and motion of a body.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PairState {
-    /// The centre of mass.
-    pub position: Vector,
-    /// Its velocity.
-    pub velocity: Vector,
-    /// The rotation from the axes that the body was given in to those of space.
-    pub attitude: Quaternion,
-    /// ω in the axes of space.
-    pub spin: Vector,
-}
 
 /// The end of an encounter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,12 +121,10 @@ pub fn narrowest(bodies: [&Partner; 2], states: &[PairState; 2]) -> f64 {
 /// The end of an encounter, or why it cannot be followed.
 pub(crate) type End = Result<Outcome<FreeBody>, Trouble>;
 
-/// Two bodies that are about to meet, and the time for which each has turned freely before.
-#[derive(Clone, Copy)]
-pub(crate) struct Approach {
-    pub states: [FreeBody; 2],
-    pub passed: [f64; 2],
-}
+/// Gives a uniform number in (0, 1) for a contact of one of some encounters.
+pub(super) type Chance<'a> = &'a dyn Fn(usize, u64) -> f64;
+/// Receives a contact of one of them.
+pub(super) type OnHit<'a> = &'a mut dyn FnMut(usize, &Hit);
 
 /// An encounter; it has no packs. It is one function for all who follow encounters: inlined, it would be compiled for each of them.
 pub(crate) struct Following<'a, 'b> {
@@ -159,93 +143,6 @@ impl WithSimd for Following<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
         self.follow()
-    }
-}
-
-/// A body in flight.
-#[derive(Clone, Copy)]
-pub(crate) struct FreeBody {
-    pub position: Vector,
-    pub velocity: Vector,
-    /// That of the principal axes.
-    pub attitude: Quaternion,
-    /// ω in the principal axes.
-    pub spin: Vector,
-}
-
-impl FreeBody {
-    #[inline(always)]
-    pub fn new(body: &Partner, state: &PairState) -> Self {
-        let attitude = state.attitude * body.axes;
-        Self {
-            position: state.position,
-            velocity: state.velocity,
-            attitude,
-            spin: attitude.inverse().rotate(state.spin),
-        }
-    }
-
-    #[inline(always)]
-    pub fn both(bodies: [&Partner; 2], states: &[PairState; 2]) -> [Self; 2] {
-        [
-            Self::new(bodies[0], &states[0]),
-            Self::new(bodies[1], &states[1]),
-        ]
-    }
-
-    #[inline(always)]
-    pub fn state(&self, body: &Partner) -> PairState {
-        PairState {
-            position: self.position,
-            velocity: self.velocity,
-            attitude: self.attitude * body.axes.inverse(),
-            spin: self.attitude.rotate(self.spin),
-        }
-    }
-
-    /// Its kinetic energy.
-    #[inline(always)]
-    pub fn energy(&self, body: &Partner) -> f64 {
-        body.translational_energy(self.velocity) + 0.5 * body.top.twice_energy(self.spin)
-    }
-
-    /// Turns it as it does in a time.
-    #[inline(always)]
-    pub fn turn(&mut self, body: &Partner, time: f64) {
-        (self.attitude, self.spin) = Rotation::new(body.top, self.attitude, self.spin).at(time);
-    }
-
-    #[inline(always)]
-    fn rotation(&self, body: &Partner) -> Turn {
-        Turn::new(&body.top, body.axis, self.attitude, self.spin)
-    }
-
-    #[inline(always)]
-    pub(super) fn pose(&self) -> BodyPose {
-        BodyPose::new(self.attitude, self.spin)
-    }
-
-    /// The velocity of a point relative to the centre of mass.
-    #[inline(always)]
-    pub(super) fn moves(&self, arm: Vector) -> Vector {
-        self.attitude.rotate(self.spin).cross(arm)
-    }
-
-    /// K of the body at a point, in axes to which `back` turns those of space.
-    #[inline(always)]
-    fn compliance(&self, body: &Partner, back: Quaternion, arm: Vector) -> Compliance {
-        let inverse = Symmetric::turned(body.inverse_moments, back * self.attitude);
-        Compliance::of_body(1.0 / body.inverse_mass, &inverse, back.rotate(arm))
-    }
-
-    /// The change by an impulse at a point.
-    #[inline(always)]
-    pub fn push(&mut self, body: &Partner, arm: Vector, impulse: Vector, sign: f64) {
-        self.velocity = impulse.mul_add(sign * body.inverse_mass, self.velocity);
-        let torque = self.attitude.inverse().rotate(arm.cross(impulse));
-        let [x, y, z] = body.inverse_moments;
-        let change = Vector::new(x * torque.x, y * torque.y, z * torque.z); // (11)
-        self.spin = change.mul_add(sign, self.spin);
     }
 }
 
@@ -487,16 +384,6 @@ impl Following<'_, '_> {
         one.push(bodies[0], arms[0], impulse, 1.0);
         two.push(bodies[1], arms[1], impulse, -1.0);
         Ok(answer.separation_speed)
-    }
-}
-
-#[inline(always)]
-pub(super) fn flight(bodies: [&Partner; 2], states: &[FreeBody; 2]) -> PairFlight {
-    let [one, two] = states;
-    PairFlight {
-        apart: one.position - two.position,
-        velocity: one.velocity - two.velocity,
-        turns: [one.rotation(bodies[0]), two.rotation(bodies[1])],
     }
 }
 

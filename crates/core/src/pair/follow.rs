@@ -1,18 +1,13 @@
 //! Encounters of the same two bodies, one after the other, or in the lanes of vectors where they can be.
 
-use super::Partner;
 use super::axial::{AxialPair, InLanes};
-use super::encounter::{Approach, End, Following, Hit};
+use super::encounter::{Chance, End, Following, OnHit};
+use super::partner::{Approach, Partner};
 use crate::contact::Between;
 use crate::law::Law;
 use crate::simd::Level;
 use std::iter::Flatten;
 use std::slice::Iter;
-
-/// Gives a uniform number in (0, 1) for a contact of one of some encounters.
-pub(super) type Chance<'a> = &'a dyn Fn(usize, u64) -> f64;
-/// Receives a contact of one of them.
-pub(super) type OnHit<'a> = &'a mut dyn FnMut(usize, &Hit);
 
 /// Follows encounters of two bodies.
 pub(crate) struct Follower<'a, 'b> {

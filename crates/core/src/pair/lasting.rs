@@ -4,8 +4,7 @@
 //! normal force that keeps it closed is N = −a₀/K_nn; the bodies part when a₀ turns positive. a₀ is the derivative of the rate of the gap in free flight, from
 //! five rates, and the motion under N is integrated by the method of Runge and Kutta, both of fourth order and with steps that leave errors of about 10⁻⁹.
 
-use super::Partner;
-use super::encounter::{FreeBody, flight};
+use super::partner::{FreeBody, Partner, flight};
 use crate::contact::{Between, PairSearch};
 use crate::math::{Quaternion, Vector};
 

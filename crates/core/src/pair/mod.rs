@@ -8,10 +8,10 @@ mod partner;
 mod run;
 mod sample;
 
-pub(crate) use encounter::{Approach, FreeBody};
-pub use encounter::{Ending, Hit, Outcome, PairState, Trouble, encounter, narrowest};
+pub use encounter::{Ending, Hit, Outcome, Trouble, encounter, narrowest};
 pub(crate) use follow::Follower;
-pub use partner::Partner;
+pub(crate) use partner::{Approach, FreeBody};
+pub use partner::{PairState, Partner};
 pub(crate) use run::failed;
 pub use run::{ENCOUNTER, HIT, PairTable, PairVariable};
 pub(crate) use sample::{DrawRows, approach, normals};

@@ -1,8 +1,10 @@
-//! A body as encounters see it.
+//! A body as encounters see it, and its state.
 
-use super::{FreeBody, PairState};
 use crate::Error;
-use crate::math::{Quaternion, Vector};
+use crate::contact::PairFlight;
+use crate::law::Compliance;
+use crate::math::{Quaternion, Symmetric, Vector};
+use crate::motion::{BodyPose, Rotation, Turn};
 use crate::shape::{AnyBody, Piece, PieceKind, Top};
 
 /// A body of an encounter, or a plane at rest, the body of infinite mass. Units are coherent, such as SI units.
@@ -149,5 +151,122 @@ impl Partner {
         }
         let principal = attitude * self.axes;
         0.5 * self.top.twice_energy(principal.inverse().rotate(spin))
+    }
+}
+
+/// Position and motion of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairState {
+    /// The centre of mass.
+    pub position: Vector,
+    /// Its velocity.
+    pub velocity: Vector,
+    /// The rotation from the axes that the body was given in to those of space.
+    pub attitude: Quaternion,
+    /// ω in the axes of space.
+    pub spin: Vector,
+}
+
+/// A body in flight.
+#[derive(Clone, Copy)]
+pub(crate) struct FreeBody {
+    pub position: Vector,
+    pub velocity: Vector,
+    /// That of the principal axes.
+    pub attitude: Quaternion,
+    /// ω in the principal axes.
+    pub spin: Vector,
+}
+
+impl FreeBody {
+    #[inline(always)]
+    pub fn new(body: &Partner, state: &PairState) -> Self {
+        let attitude = state.attitude * body.axes;
+        Self {
+            position: state.position,
+            velocity: state.velocity,
+            attitude,
+            spin: attitude.inverse().rotate(state.spin),
+        }
+    }
+
+    #[inline(always)]
+    pub fn both(bodies: [&Partner; 2], states: &[PairState; 2]) -> [Self; 2] {
+        [
+            Self::new(bodies[0], &states[0]),
+            Self::new(bodies[1], &states[1]),
+        ]
+    }
+
+    #[inline(always)]
+    pub fn state(&self, body: &Partner) -> PairState {
+        PairState {
+            position: self.position,
+            velocity: self.velocity,
+            attitude: self.attitude * body.axes.inverse(),
+            spin: self.attitude.rotate(self.spin),
+        }
+    }
+
+    /// Its kinetic energy.
+    #[inline(always)]
+    pub fn energy(&self, body: &Partner) -> f64 {
+        body.translational_energy(self.velocity) + 0.5 * body.top.twice_energy(self.spin)
+    }
+
+    /// Turns it as it does in a time.
+    #[inline(always)]
+    pub fn turn(&mut self, body: &Partner, time: f64) {
+        (self.attitude, self.spin) = Rotation::new(body.top, self.attitude, self.spin).at(time);
+    }
+
+    #[inline(always)]
+    fn rotation(&self, body: &Partner) -> Turn {
+        Turn::new(&body.top, body.axis, self.attitude, self.spin)
+    }
+
+    #[inline(always)]
+    pub(super) fn pose(&self) -> BodyPose {
+        BodyPose::new(self.attitude, self.spin)
+    }
+
+    /// The velocity of a point relative to the centre of mass.
+    #[inline(always)]
+    pub(super) fn moves(&self, arm: Vector) -> Vector {
+        self.attitude.rotate(self.spin).cross(arm)
+    }
+
+    /// K of the body at a point, in axes to which `back` turns those of space.
+    #[inline(always)]
+    pub(super) fn compliance(&self, body: &Partner, back: Quaternion, arm: Vector) -> Compliance {
+        let inverse = Symmetric::turned(body.inverse_moments, back * self.attitude);
+        Compliance::of_body(1.0 / body.inverse_mass, &inverse, back.rotate(arm))
+    }
+
+    /// The change by an impulse at a point.
+    #[inline(always)]
+    pub fn push(&mut self, body: &Partner, arm: Vector, impulse: Vector, sign: f64) {
+        self.velocity = impulse.mul_add(sign * body.inverse_mass, self.velocity);
+        let torque = self.attitude.inverse().rotate(arm.cross(impulse));
+        let [x, y, z] = body.inverse_moments;
+        let change = Vector::new(x * torque.x, y * torque.y, z * torque.z); // (11)
+        self.spin = change.mul_add(sign, self.spin);
+    }
+}
+
+/// Two bodies that are about to meet, and the time for which each has turned freely before.
+#[derive(Clone, Copy)]
+pub(crate) struct Approach {
+    pub states: [FreeBody; 2],
+    pub passed: [f64; 2],
+}
+
+#[inline(always)]
+pub(super) fn flight(bodies: [&Partner; 2], states: &[FreeBody; 2]) -> PairFlight {
+    let [one, two] = states;
+    PairFlight {
+        apart: one.position - two.position,
+        velocity: one.velocity - two.velocity,
+        turns: [one.rotation(bodies[0]), two.rotation(bodies[1])],
     }
 }

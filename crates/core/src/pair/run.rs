@@ -1,7 +1,9 @@
 //! Many encounters, on all cores: each depends on the seed and its number alone.
 
-use super::encounter::{Approach, FreeBody, Hit, Outcome, PairState, Trouble, narrowest};
-use super::{Follower, Partner, sample::DrawRows, sample::Encounters};
+use super::encounter::{Hit, Outcome, Trouble, narrowest};
+use super::follow::Follower;
+use super::partner::{Approach, FreeBody, PairState, Partner};
+use super::sample::{DrawRows, Encounters};
 use crate::law::Law;
 use crate::math::Vector;
 use crate::random::of_impact;

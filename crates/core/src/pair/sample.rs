@@ -4,7 +4,7 @@
 //! sphere of radius S, the sum of the reaches, at the rate πS²⟨u⟩ = πS²√(8s/π) for unit density. u²/2s of them has the density x e⁻ˣ, the direction is
 //! isotropic, and the impact parameter uniform on the disc. On a plane they come with the flux √(T/2πm), and v_n²m/2T has the density e⁻ˣ.
 
-use super::{PairState, Partner};
+use super::partner::{PairState, Partner};
 use crate::Error;
 use crate::math::{Quaternion, Vector};
 use crate::random::of_encounters;
