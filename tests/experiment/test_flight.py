@@ -256,6 +256,23 @@ def test_the_time_of_contact_is_no_flight() -> None:
     assert known.attrs["contact_time"] == 8e-4
 
 
+def test_a_contact_in_air_lasts_as_long_as_the_speed_of_the_landing_says() -> None:
+    """0.5 ms and a terminal velocity of 8.8 m/s, to 1 µs: no power law, and ε to its error."""
+    times, speed = [0.0], 2.0
+    for _ in range(16):
+        contact = 5e-4 * speed**-0.2
+        flight, speed = flight_in_air(0.9 * speed, 8.8)
+        times.append(times[-1] + contact + flight)
+    drag = rs.flight.Drag(terminal_velocity=8.8)
+    known = rs.flight.restitution(times, 1e-9, contact_time=5e-4, drag=drag)
+    assert known.restitution.values[2:-1] == pytest.approx(0.9, abs=2e-8)
+    unknown = rs.flight.ContactTime(at_1_m_s=0.0, uncertainty=5e-4)
+    data = rs.flight.restitution(times, 1e-7, contact_time=unknown, drag=drag)
+    constant, power = (rs.flight.fit(data, law) for law in ("constant", "power law"))
+    assert constant.aic - power.aic < 6.0
+    assert abs(constant.parameters["restitution"] - 0.9) < 2.0 * constant.errors["restitution"]
+
+
 def test_a_contact_that_is_known_to_an_error_makes_no_law_of_speed() -> None:
     """It moves all ε together: with its error a constant fits, which without one is refuted."""
     times = bounced(0.9, 2e-4, 20) + np.random.default_rng(1).normal(0.0, 1e-6, 20)

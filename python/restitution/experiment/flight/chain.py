@@ -164,8 +164,10 @@ def chain(given: Measured) -> Chain:
     intervals = np.diff(given.times)
     landing = None if given.drop is None else fall(given.drop, given.gravity, given.terminal)
     first = None if landing is None else landing.speed
-    delay = delays(intervals, given.gravity, first)
-    delay = delays(intervals - given.contact * delay, given.gravity, first)  # v is of the flight alone
+    delay = np.zeros_like(intervals)
+    for _ in range(2):  # the speeds are those of the flights alone
+        flight = speeds(intervals - given.contact * delay, given.gravity, given.terminal)
+        delay = delays(flight.up, flight.down, first)
     flight = speeds(intervals - given.contact * delay, given.gravity, given.terminal)
     after[:-1], before[1:] = flight.up, flight.down
     place = np.arange(n - 1)

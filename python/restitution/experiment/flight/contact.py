@@ -126,17 +126,18 @@ def _hertz(mass: float, diameter: float, modulus: float) -> float:
     return float(2.87 * (mass**2 / (0.5 * diameter * modulus**2)) ** 0.2)
 
 
-def delays(flights: Array, gravity: float, first: float | None = None) -> Array:
-    """Return t_c/τ of the impact before each flight, from how long flights last; shape of `flights`.
+def delays(up: Array, down: Array, first: float | None = None) -> Array:
+    """Return t_c/τ of the impact before each flight, from the speeds in m/s with which flights begin and end.
 
-    The speed before an impact is that after the flight before it; of the first, and after a flight that is
-    not known, the speed after it stands for it, unless the `first` is known, in m/s.
+    The speed before an impact is that at the end of the flight before it. Of the first, unless that is the
+    `first` that is known, and after a flight that is not known, it is the speed after it over the median ε.
     """
-    before = np.concatenate([flights[..., :1], flights[..., :-1]], axis=-1)
-    before = np.where(np.isnan(before), flights, before)
-    speed = 0.5 * gravity * before
+    ratios = down[:-1] / up[1:]
+    usual = np.median(ratios[np.isfinite(ratios)]) if np.isfinite(ratios).any() else 1.0
+    speed = np.append(np.nan, down[:-1])
+    speed = np.where(np.isnan(speed), usual * up, speed)
     if first is not None:
-        speed[..., 0] = first
+        speed[0] = first
     return np.asarray(speed**_POWER)
 
 

@@ -168,6 +168,7 @@ class Series:
         gravity = float(data.attrs["gravity"])
         contact = float(data.attrs.get("contact_time_uncertainty", 0.0))
         drop = first**2 / (2.0 * gravity)
+        half = 0.5 * gravity * np.diff(time)  # drag changes the contact times by little
         one = cls(
             drop=drop,
             gravity=gravity,
@@ -176,7 +177,7 @@ class Series:
                 float(data.attrs.get("clock_uncertainty", 0.0)),
             ),
             errors=errors,
-            delay=contact * np.nan_to_num(delays(np.diff(time), gravity)),
+            delay=contact * np.nan_to_num(delays(half, half)),
             known=known,
             speed=speed[known],
             reference=reference,
