@@ -1,6 +1,7 @@
 """The command line; nothing heavy is imported before a command needs it, so that help comes at once."""
 
 import os
+import sys
 from collections.abc import Callable
 from typing import Annotated
 
@@ -38,6 +39,10 @@ def main() -> None:
         except OSError as error:  # of standard output, as where the disk is full
             tell(f"error: {error.filename or 'standard output'}: {error.strerror}")
             raise SystemExit(FAILED) from None
+        finally:
+            # The command has said what there is to say: tasks of zarr that end with the interpreter, as where
+            # no more files can be opened, are not told of.
+            sys.unraisablehook = lambda _: None
 
 
 def _version(wanted: bool) -> None:

@@ -269,14 +269,14 @@ struct Batch<'a> {
     /// Looks so far.
     rows: Vec<f64>,
     /// Encounters that are not followed yet, for each two kinds, their number, and a bit for each particle that takes part.
-    waiting: Vec<Waiting>,
+    waiting: Vec<PendingEncounters>,
     waits: usize,
     taken: Vec<u64>,
 }
 
 /// Encounters of two kinds that are followed together: each two particles, the number of the candidate, and the time.
 #[derive(Default)]
-struct Waiting {
+struct PendingEncounters {
     pairs: Vec<([usize; 2], u64, f64)>,
     approaches: Vec<Approach>,
 }
@@ -343,7 +343,10 @@ impl<'a> Batch<'a> {
             ends.push(velocities.len());
         }
         let mut waiting = Vec::new();
-        waiting.resize_with(gas.kinds.len() * gas.kinds.len(), Waiting::default);
+        waiting.resize_with(
+            gas.kinds.len() * gas.kinds.len(),
+            PendingEncounters::default,
+        );
         Ok(Self {
             gas,
             number,
@@ -688,7 +691,7 @@ impl<'a> Batch<'a> {
         let mut ended = Ok(());
         for (i, follower) in followers.iter_mut().enumerate() {
             let mut waiting = std::mem::take(&mut self.waiting[i]);
-            let Waiting { pairs, approaches } = &mut waiting;
+            let PendingEncounters { pairs, approaches } = &mut waiting;
             let (seed, batch) = (self.gas.seed, self.number(0));
             let chance = |k: usize, contact| of_impact(seed, batch | pairs[k].1, contact);
             let ends = follower.follow(approaches, &chance, None);

@@ -44,7 +44,7 @@ struct BallsOnAxis {
 }
 
 /// Encounters that are followed in lanes.
-pub(super) struct InLanes<'a, 'b, 'c> {
+pub(super) struct AxialEncounters<'a, 'b, 'c> {
     pub pair: &'c AxialPair<'a, 'b>,
     pub approaches: &'c [Approach],
     /// A uniform number in (0, 1) for a contact of one of them.
@@ -256,7 +256,7 @@ struct Encountering<S: Simd> {
 }
 
 /// What a look finds: the time up to which nothing touches, and of the two balls that may touch then their number from 1 on, rate and bound of the gap.
-struct Look<S: Simd> {
+struct NearestBalls<S: Simd> {
     clear: Pack<S, 1>,
     balls: Pack<S, 1>,
     rate: Pack<S, 1>,
@@ -346,7 +346,7 @@ impl<S: Simd> Encountering<S> {
 
     /// Looks at all balls.
     #[inline(always)]
-    fn look(&self, pair: &AxialPair<'_, '_>) -> Look<S> {
+    fn look(&self, pair: &AxialPair<'_, '_>) -> NearestBalls<S> {
         let simd = self.time.simd();
         let infinite = Pack::splat(simd, f64::INFINITY);
         let zero = Pack::splat(simd, 0.0);
@@ -356,7 +356,7 @@ impl<S: Simd> Encountering<S> {
         let y = self.velocity.mul_add(self.time, self.apart);
         let leaves = self.time.eq(0.0);
         let (mut first, mut number) = (
-            Look {
+            NearestBalls {
                 clear: infinite,
                 balls: zero,
                 rate: zero,
@@ -381,7 +381,7 @@ impl<S: Simd> Encountering<S> {
                 gap.rate = left.select(self.left_speed, gap.rate);
                 let step = gap.step(self.shortest);
                 let nearer = step.lt(first.clear);
-                first = Look {
+                first = NearestBalls {
                     clear: nearer.select(step, first.clear),
                     balls: nearer.select(number, first.balls),
                     rate: nearer.select(gap.rate, first.rate),
@@ -405,7 +405,7 @@ impl<S: Simd> Encountering<S> {
     }
 }
 
-impl InLanes<'_, '_, '_> {
+impl AxialEncounters<'_, '_, '_> {
     /// The contacts in some lanes, of the balls of these numbers; returns the lanes in which the balls leave each other.
     #[inline(always)]
     fn collide<S: Simd>(
@@ -549,7 +549,7 @@ impl<S: Simd> Encountering<S> {
     }
 }
 
-impl WithSimd for InLanes<'_, '_, '_> {
+impl WithSimd for AxialEncounters<'_, '_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -590,7 +590,7 @@ impl WithSimd for InLanes<'_, '_, '_> {
             let (closes, best);
             if pair.round {
                 let one = Pack::splat(simd, 1.0);
-                look = Look {
+                look = NearestBalls {
                     clear: all.time,
                     balls: one,
                     rate: one,
@@ -643,7 +643,7 @@ impl<S: Simd> Encountering<S> {
     #[inline(always)]
     fn turn_before(
         &mut self,
-        run: &InLanes<'_, '_, '_>,
+        run: &AxialEncounters<'_, '_, '_>,
         jobs: &[usize; MOST_LANES],
         fresh: Mask<S, 1>,
     ) {

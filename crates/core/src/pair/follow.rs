@@ -1,6 +1,6 @@
 //! Encounters of the same two bodies, one after the other, or in the lanes of vectors where they can be.
 
-use super::axial::{AxialPair, InLanes};
+use super::axial::{AxialEncounters, AxialPair};
 use super::encounter::{Chance, End, Following, OnHit};
 use super::partner::{Approach, Partner};
 use crate::contact::Between;
@@ -43,7 +43,7 @@ impl<'a, 'b> Follower<'a, 'b> {
         self.ends.clear();
         self.ends.resize(approaches.len(), None);
         if let Some(pair) = &self.axial {
-            self.level.run(InLanes {
+            self.level.run(AxialEncounters {
                 pair,
                 approaches,
                 chance,
