@@ -259,6 +259,22 @@ def test_bad_states_are_named(changed: Any, name: Any) -> None:
         rs.pair.encounters(body, body, ELASTIC, states=states_of(**changed))
 
 
+@pytest.mark.parametrize("law", [ELASTIC, rs.Coulomb(normal=1.0, friction=0.0)])
+def test_rotation_alone_lets_bodies_meet(law: Any) -> None:
+    """Centres at rest d apart, one dumbbell turning at ω in its plane: sin ωt = (d² + L²/2 - 4R²)/dL."""
+    body, apart, rate = dumbbell(1.0), 2.2, 10.0
+    half = np.sqrt(0.5)
+    states = states_of(
+        position=np.array([[[0.0, 0, 0], [0, apart, 0]]]),
+        velocity=np.zeros((1, 2, 3)),
+        angular_velocity=np.array([[[0.0, 0, rate], [0, 0, 0]]]),
+        attitude=np.array([[[half, 0, half, 0], [1.0, 0, 0, 0]]]),
+    )
+    found = rs.pair.encounters(body, body, law, states=states, record="contacts")
+    exact = np.arcsin((apart**2 + 0.5 - 4.0) / apart) / rate
+    assert found["time"][0, 0] == pytest.approx(exact, rel=1e-12)
+
+
 @pytest.mark.parametrize("body", [rs.Ring, rs.Mesh, rs.Superellipsoid])
 def test_bodies_that_are_not_followed_are_refused(body: Any) -> None:
     with pytest.raises(ValueError, match=r"^body = "):

@@ -7,7 +7,7 @@ use crate::{resources, watch};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use restitution_core::pair::{
-    ENCOUNTER, Encounters, Ending, HIT, Meeting, PairState, PairVariable, Partner,
+    ENCOUNTER, Encounters, Ending, HIT, Meeting, PairState, PairVariable, Partner, width,
 };
 use restitution_core::{Quaternion, Vector};
 
@@ -109,11 +109,6 @@ fn encounters<'py>(
         run.attempt_rate(),
         interrupted,
     ))
-}
-
-/// The numbers of a variable of both bodies.
-fn width(&(.., parts, each): &PairVariable) -> usize {
-    parts * (1 + usize::from(each))
 }
 
 fn state(row: &[f64; 26]) -> [PairState; 2] {

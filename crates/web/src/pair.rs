@@ -2,9 +2,7 @@
 
 use crate::records::here;
 use crate::rigid::vector;
-use restitution_core::pair::{
-    Encounters, HIT, Meeting, PairState, PairTable, PairVariable, Partner,
-};
+use restitution_core::pair::{Encounters, HIT, Meeting, PairState, PairTable, Partner, width};
 use restitution_core::{Error, Monitor, Quaternion, Run, Vector};
 use std::ops::Range;
 
@@ -36,7 +34,7 @@ pub fn meet(run: &Run<'_>, pairs: &[f64; NUMBERS], number: usize) -> Result<Vec<
     let mut states = [0, 1].map(|i| before(&table, 0, i));
     let mut clock = 0.0;
     made.extend(flight(&body, clock, &states));
-    for hit in table.hits.chunks(width(HIT)) {
+    for hit in table.hits.chunks(HIT.iter().map(width).sum()) {
         let [point, impulse] = [4, 7].map(|at| vector(hit[at..].first_chunk().expect("a vector")));
         for (state, sign) in states.iter_mut().zip([1.0, -1.0]) {
             *state = body.struck(&body.later(state, hit[0] - clock), point, impulse * sign);
@@ -119,14 +117,6 @@ fn follow(
         })
         .collect();
     record(Some(&states), contacts)
-}
-
-fn width(variables: &[PairVariable]) -> usize {
-    variables.iter().map(size).sum()
-}
-
-fn size(&(.., parts, each): &PairVariable) -> usize {
-    parts * (1 + usize::from(each))
 }
 
 /// A body at the beginning.

@@ -688,7 +688,6 @@ impl<'a> Batch<'a> {
         if self.waits == 0 {
             return Ok(());
         }
-        let mut ended = Ok(());
         for (i, follower) in followers.iter_mut().enumerate() {
             let mut waiting = std::mem::take(&mut self.waiting[i]);
             let PendingEncounters { pairs, approaches } = &mut waiting;
@@ -700,10 +699,9 @@ impl<'a> Batch<'a> {
             {
                 match end {
                     Ok(outcome) => self.met(pair, approach, outcome, time),
-                    Err(trouble) if ended.is_ok() => {
-                        ended = Err(self.lost(trouble.clone(), approach, law, batch | candidate));
+                    Err(trouble) => {
+                        return Err(self.lost(trouble.clone(), approach, law, batch | candidate));
                     }
-                    Err(_) => {}
                 }
                 for i in pair {
                     self.taken[i / 64] &= !(1 << (i % 64));
@@ -715,7 +713,7 @@ impl<'a> Batch<'a> {
         }
         self.waits = 0;
         self.approach();
-        ended
+        Ok(())
     }
 
     /// What an encounter at a time does to two particles.

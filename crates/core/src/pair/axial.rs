@@ -2,7 +2,7 @@
 //!
 //! The axis **e** of such a body turns about **Λ** at the rate Ω = |Λ|/J, and all that a contact without friction sees of the body is its axis: a unit
 //! impulse along **n** on the ball at x**e** changes **Λ**/J by (x/J) **e** × **n**, so that K_nn is the sum of 1/m + (x²/J)|**e** × **n**|² of both (10). The spin about
-//! the axis is constant, and is added to the attitude at the end. What takes more (contacts that may last or accumulate, a search that does not end soon)
+//! the axis is constant, and is added to the attitude at the end. What takes more (contacts that may last or accumulate, bodies that only rotation moves, a search that does not end soon)
 //! is rare, and left to [`Following`](super::encounter::Following).
 
 use super::encounter::{Chance, End, Ending, Hit, OnHit, Outcome, UNRESOLVED};
@@ -92,7 +92,7 @@ impl BallsOnAxis {
     }
 }
 
-/// The lanes that are true, as bits.
+/// The lanes that are true, as bits: what [`Mask::each`] would call for each is not compiled for the vectors unless it is small.
 #[inline(always)]
 fn bits<S: Simd>(mask: Mask<S, 1>) -> u32 {
     let lanes = mask.select(1.0, 0.0);
@@ -235,11 +235,10 @@ struct Encountering<S: Simd> {
     apart: Vectors<S, 1>,
     velocity: Vectors<S, 1>,
     lines: [Line<S>; 2],
-    /// Since the flight began: the time of the next look, and that at which they are out of reach.
+    /// Since the flight began: the time of the next look, and that at which they are out of reach; 0 if they are from the beginning, infinite if only
+    /// their rotation moves them.
     time: Pack<S, 1>,
     until: Pack<S, 1>,
-    /// Whether they come within reach.
-    meets: Mask<S, 1>,
     /// The two balls that leave each other, counted from 1, or 0, and their speed.
     left: Pack<S, 1>,
     left_speed: Pack<S, 1>,
@@ -276,7 +275,6 @@ impl<S: Simd> Encountering<S> {
             lines: [Line::none(simd), Line::none(simd)],
             time: zero,
             until: zero,
-            meets: Mask::splat(simd, false),
             left: zero,
             left_speed: zero,
             shortest: zero,
@@ -324,9 +322,10 @@ impl<S: Simd> Encountering<S> {
         let leaves = parts.select(-beyond, root - along) / parts.select(along + root, square);
         let enters = comes.select(beyond / comes.select(root - along, 1.0), 0.0);
         let meets = zero.lt(chord) & zero.lt(leaves);
-        self.meets = (fresh & meets) | (!fresh & self.meets);
+        let stays = square.eq(0.0) & beyond.le(0.0);
+        let until = stays.select(f64::INFINITY, meets.select(leaves, 0.0));
         self.time = fresh.select(enters.max(0.0), self.time);
-        self.until = fresh.select(meets.select(leaves, 0.0), self.until);
+        self.until = fresh.select(until, self.until);
         self.looks = fresh.select(0.0, self.looks);
         let mut most = zero;
         for i in 0..2 {
@@ -605,14 +604,14 @@ impl WithSimd for AxialEncounters<'_, '_, '_> {
                 closes = look.rate.lt(0.0) & (look.bound * square).le(INVISIBLE * reach);
             }
             all.looks = all.looks + 1.0;
-            let looks = all.meets | Pack::splat(simd, 0.0).lt(all.contacts);
-            all.steps = looks.select(all.steps + 1.0, all.steps);
+            let zero = Pack::splat(simd, 0.0);
+            let again = zero.lt(all.contacts);
+            all.steps = (zero.lt(all.until) | again).select(all.steps + 1.0, all.steps);
             let within = best.lt(all.until);
             let touched = active & within & closes;
             let passed = active & !within;
             let short = (look.bound * best * best).lt(UNRESOLVED * reach);
-            let again = Pack::splat(simd, 0.0).lt(all.contacts);
-            let endless = passed & !all.until.lt(f64::INFINITY);
+            let endless = active & !all.until.lt(f64::INFINITY);
             let mut hard =
                 (active & !(touched | passed) & Pack::splat(simd, MOST_LOOKS).lt(all.looks))
                     | (touched & short & again)

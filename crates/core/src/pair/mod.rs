@@ -13,6 +13,6 @@ pub(crate) use follow::Follower;
 pub(crate) use partner::{Approach, FreeBody};
 pub use partner::{PairState, Partner};
 pub(crate) use run::failed;
-pub use run::{ENCOUNTER, HIT, PairTable, PairVariable};
+pub use run::{ENCOUNTER, HIT, PairTable, PairVariable, width};
 pub(crate) use sample::{DrawRows, approach, normals};
 pub use sample::{Encounters, Meeting};

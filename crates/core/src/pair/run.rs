@@ -240,8 +240,8 @@ struct Encountered {
     first: Option<Hit>,
 }
 
-/// The numbers of a variable of both bodies.
-fn width(&(.., parts, each): &PairVariable) -> usize {
+/// How many numbers a variable has.
+pub fn width(&(.., parts, each): &PairVariable) -> usize {
     parts * (1 + usize::from(each))
 }
 
