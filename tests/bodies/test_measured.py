@@ -18,7 +18,7 @@ def test_length_and_width_are_those_of_the_body() -> None:
     ("length", "width", "message"),
     [
         (5e-3, 6e-3, r"^length = 0.005: must be >= width = 0.006 \(m\)"),
-        (-1.0, 6e-3, r"^length = -1.0: must be a finite number > 0 \(m\)"),
+        (-1.0, 6e-3, r"^length = -1.0: must be a finite number > 0, in m"),
         (6e-3, float("nan"), r"^width = nan"),
     ],
 )

@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterable
 from html import escape
 from math import floor, isfinite, isnan, log10
+from typing import get_type_hints
 
 from pydantic import BaseModel
 
@@ -23,15 +24,22 @@ class Text(str):
 def signature(cls: type[BaseModel], by_place: tuple[str, ...]) -> inspect.Signature:
     """Return the fields of a class as its arguments, optional ones last, by keyword but for `by_place`."""
     keyword, positional = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
-    parameters = []
+    parameters, hints = [], get_type_hints(cls)
     for name, field in cls.model_fields.items():
-        kind = field.annotation
+        kind = hints[name]
         text = kind.__name__ if isinstance(kind, type) else re.sub(r"\w+\.", "", str(kind))
+        text = re.sub(r"^Optional\[(.*)\]$", r"\1 | None", text)
         default = inspect.Parameter.empty if field.is_required() else field.default
         place = positional if name in by_place else keyword
         parameters.append(inspect.Parameter(name, place, default=default, annotation=Text(text)))
     empty = inspect.Parameter.empty
     return inspect.Signature(sorted(parameters, key=lambda one: (one.kind, one.default is not empty)))
+
+
+def entries(doc: str) -> dict[str, str]:
+    """Return the parameters that a docstring describes, by name, without the indentation of all of them."""
+    found = re.findall(r"^((\w+) : .*(?:\n    .*)*)", inspect.cleandoc(doc), re.MULTILINE)
+    return {name: text for text, name in found}
 
 
 def table(title: str, rows: Iterable[tuple[str, object]]) -> str:

@@ -3,6 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from functools import cached_property
+from inspect import cleandoc
 from typing import Any, TypeVar
 
 import numpy as np
@@ -16,6 +17,12 @@ B = TypeVar("B", bound="AnyBody")
 
 class AnyBody(Described):
     """A body that can be dropped, in SI units. Mass and inertia follow from its parameters."""
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        super().__pydantic_init_subclass__(**options)
+        if cls.__doc__:  # None under python -OO
+            cls.__doc__ = _completed(cls, cleandoc(cls.__doc__))
 
     @cached_property
     @abstractmethod
@@ -44,8 +51,27 @@ class AnyBody(Described):
         yield "mass", _text.value(self.mass, "kg")
 
 
+def _completed(kind: type[AnyBody], text: str) -> str:
+    """Add the parameters of a body that only its bases describe to those in the text on it."""
+    own, known = _text.entries(text), dict[str, str]()
+    for base in kind.__mro__[-1:0:-1]:
+        known |= _text.entries(base.__doc__ or "") if issubclass(base, AnyBody) else {}
+    lacking = [entry for name, entry in known.items() if name in kind.model_fields and name not in own]
+    start, mark, rest = text.partition("\n\nExamples\n")
+    return "\n".join([start, *lacking]) + mark + rest
+
+
 class Body(AnyBody):
-    """A body of revolution, full or hollow, whose axis makes the angle θ with the plane normal."""
+    """A body of revolution, full or hollow, whose axis makes the angle θ with the plane normal.
+
+    Parameters
+    ----------
+    density : float, default 2500
+        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : (float, float) or float, optional
+        Moments of inertia across and about the axis, in kg m², instead of those of the matter, or one number
+        for both; the second at most twice the first. Not together with ``wall``.
+    """
 
     @cached_property
     def compiled(self) -> _core.Solid:

@@ -58,8 +58,7 @@ class Clump(RigidBody):
     --------
     >>> import restitution as rs
     >>> body = rs.Clump(spheres=[(0, 0, 1.5e-4, 3e-3), (0, 0, -1.5e-4, 3e-3)])
-    >>> dumbbell = rs.Dumbbell(radius=3e-3, separation=3e-4)
-    >>> round(body.mass / dumbbell.mass, 12)
+    >>> round(body.mass / rs.Dumbbell(radius=3e-3, separation=3e-4).mass, 12)
     1.0
     """
 
@@ -103,10 +102,9 @@ class Clump(RigidBody):
         path : str or path-like
             A text file. What follows a ``#`` is a comment.
         format : {"rows", "csv", "lammps", "liggghts"}, optional
-            Rows ``x y z r`` with spaces or commas between them, after which a type may stand, and which ``&``
-            continues on the next line, as LIGGGHTS (multisphere), CLUMP and MercuryDPM have them; a table
-            whose header names columns x, y, z and r, as DEM-Engine has them; or a molecule of LAMMPS, of
-            which ``Coords`` and ``Diameters`` are read, but neither mass nor inertia; or an input script of
+            Rows ``x y z r`` with spaces or commas between, after which a type may stand, and which ``&``
+            continues on the next line (LIGGGHTS, CLUMP, MercuryDPM); a table whose header names columns x, y,
+            z and r (DEM-Engine); a molecule of LAMMPS, its ``Coords`` and ``Diameters``; or a script of
             LIGGGHTS with a ``particletemplate/multisphere`` that has its spheres in it. None finds out.
         scale : float, default 1
             What a unit of the file is in m: 1e-3 for millimetres. > 0.
@@ -116,8 +114,7 @@ class Clump(RigidBody):
         Raises
         ------
         ValueError
-            If the file is none of these, or a row is malformed; the message names its line, and what is
-            wrong with it.
+            If the file is none of these, or a row is malformed; the message names its line.
         OSError
             If the file cannot be read.
         """
@@ -132,19 +129,6 @@ class Clump(RigidBody):
         return cls(spheres=scaled, density=density, inertia=inertia, centre=centre)
 
     def to_csv(self, path: str | os.PathLike[str], *, replace: bool = False) -> None:
-        """Write the spheres as a table with the columns x, y, z and r, in m.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file, which is written whole or not at all.
-        replace : bool, default False
-            Whether a file in its place is replaced.
-
-        Raises
-        ------
-        OSError
-            If the file is there and is not to be replaced, or cannot be written.
-        """
+        """Write a table with the columns x, y, z and r, in m; an existing file only with ``replace``."""
         lines = ["x,y,z,r", *(",".join(map(repr, sphere)) for sphere in self.spheres)]
         files.write(files.path_from("path", path), "\n".join(lines) + "\n", replace=flag("replace", replace))

@@ -28,13 +28,6 @@ class Die(Matter):
         Number of faces.
     edge : float
         Length of an edge in m; finite and > 0.
-    density : float, default 2500
-        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
-    inertia : array_like, shape (3, 3), optional
-        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
-        homogeneous. The mass stays that of the density.
-    centre : array_like, shape (3,), optional
-        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------

@@ -4,10 +4,10 @@ from typing import Annotated, Self
 
 from pydantic import Field
 
+from restitution._internal.arrays import positive
 from restitution._internal.parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
 from restitution.bodies._hollow import Moments, Wall
-from restitution.bodies._length_width import LengthWidth
 from restitution.bodies._two_balls import PositivePair, both
 
 
@@ -29,19 +29,16 @@ class Dumbbell(Body):
         Density of both spheres, or of sphere 1 and of sphere 2, in kg/m³; finite and > 0. If it is the same,
         the motion does not depend on it.
     wall : float, optional
-        Thickness of the wall of a hollow body, in m; at least 10⁻⁶ R and at most the larger radius. It is
-        then these spheres less spheres whose radii are shorter by it. Left out where both radius and density
-        differ.
-        Mass and inertia are those of the wall.
-    inertia : (float, float) or float, optional
-        Moments of inertia across and about the axis, in kg m², instead of those of the matter, or one number
-        for both; the second at most twice the first. Not together with ``wall``.
+        Thickness of the wall of a hollow body, in m; at least 10⁻⁶ R and at most the larger radius. Spheres
+        whose radii are shorter by it are missing then, and mass and inertia are those of the wall. Left out
+        where both radius and density differ.
 
     Examples
     --------
     >>> import restitution as rs
-    >>> body = rs.Dumbbell(radius=3e-3, separation=3e-4, density=2500.0)
-    >>> round(body.elongation, 12)
+    >>> round(rs.Dumbbell(radius=3e-3, separation=3e-4).elongation, 12)
+    0.1
+    >>> round(rs.Dumbbell.from_length_width(6.3e-3, 6e-3).elongation, 9)
     0.1
     >>> club = rs.Dumbbell(radius=(3e-3, 2e-3), separation=4e-3, density=(2500, 7800))
     >>> round(club.centre_of_mass, 6)  # towards sphere 1, which is heavier
@@ -58,31 +55,18 @@ class Dumbbell(Body):
     def from_length_width(
         cls, length: float, width: float, *, density: float | tuple[float, float] = 2500.0
     ) -> Self:
-        """Make equal spheres with this length along the axis, L + 2R, and this width across it, 2R.
-
-        Parameters
-        ----------
-        length, width : float
-            In m, > 0; the length is at least the width.
-        density : float or (float, float)
-            In kg/m³, > 0.
+        """Make equal spheres whose length along the axis, L + 2R, and width across it, 2R, are given in m.
 
         Raises
         ------
         ValueError
-            If a value is out of range; the message names it.
-
-        Examples
-        --------
-        >>> import restitution as rs
-        >>> rs.Dumbbell.from_length_width(6.3e-3, 6.0e-3).elongation.__round__(9)
-        0.1
+            If a value is out of range, or the length less than the width; the message names it.
         """
-        size = LengthWidth(length=length, width=width)
-        if size.length < size.width:
-            raise ParameterError(wrong("length", size.length, f">= width = {size.width!r} (m)"))
+        long, wide = positive("length", length, "m"), positive("width", width, "m")
+        if long < wide:
+            raise ParameterError(wrong("length", long, f">= width = {wide!r} (m)"))
         with in_terms_of(length=length, width=width, density=density):
-            return cls(radius=0.5 * size.width, separation=size.length - size.width, density=density)
+            return cls(radius=0.5 * wide, separation=long - wide, density=density)
 
     @property
     def radii(self) -> tuple[float, float]:

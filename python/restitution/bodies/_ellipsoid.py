@@ -20,13 +20,6 @@ class Ellipsoid(Matter):
     ----------
     semi_axes : array_like, shape (3,)
         Semi-axes along x, y and z of the body, in m; > 0, the largest at most 1000 times the smallest.
-    density : float, default 2500
-        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
-    inertia : array_like, shape (3, 3), optional
-        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
-        homogeneous. The mass stays that of the density.
-    centre : array_like, shape (3,), optional
-        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -56,13 +49,6 @@ class Superellipsoid(Matter):
     exponents : array_like, shape (2,)
         n1, along z, and n2, across, each from 1.1 to 100: with 2 and 2 it is an ellipsoid, with larger ones
         it becomes a box with round edges, with smaller ones an octahedron.
-    density : float, default 2500
-        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
-    inertia : array_like, shape (3, 3), optional
-        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
-        homogeneous. The mass stays that of the density.
-    centre : array_like, shape (3,), optional
-        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------

@@ -27,9 +27,6 @@ class LoadedSphere(Body):
     wall : float, optional
         Thickness of the wall of a hollow body, in m; at least 10⁻⁶ R and at most R. The load comes on top.
         Mass and inertia are those of the wall.
-    inertia : (float, float) or float, optional
-        Moments of inertia across and about the axis, in kg m², instead of those of the matter, or one number
-        for both; the second at most twice the first. Not together with ``wall``.
 
     Examples
     --------

@@ -40,13 +40,6 @@ class Mesh(Matter):
     triangles : array_like of int, shape (m, 3)
         Numbers of three vertices, from 0, counter-clockwise as seen from outside. Every edge is that of as
         many triangles in one direction as in the other, or the surface is not closed, or not oriented.
-    density : float, default 2500
-        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
-    inertia : array_like, shape (3, 3), optional
-        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
-        homogeneous. The mass stays that of the density.
-    centre : array_like, shape (3,), optional
-        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------

@@ -25,16 +25,8 @@ class Revolution(FromRows, Turned):
     Parameters
     ----------
     profile : array_like, shape (n, 2)
-        Points (z, r) of its outline from one end to the other, in m, joined by straight lines; r ≥ 0 is the
-        distance from the axis. Where it ends off the axis, a flat face closes it; where it ends at its
-        first point, it is closed itself, as that of a ring or a cup.
-    density : float, default 2500
-        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
-    inertia : array_like, shape (3, 3), optional
-        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
-        homogeneous. The mass stays that of the density.
-    centre : array_like, shape (3,), optional
-        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
+        Points (z, r) of its outline from end to end, in m, joined by straight lines; r ≥ 0 is the distance
+        from the axis. A flat face closes one that ends off the axis, unless it ends at its first point.
 
     Examples
     --------
@@ -74,13 +66,6 @@ class Cylinder(Turned):
     ----------
     radius, height : float
         In m; finite and > 0.
-    density : float, default 2500
-        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
-    inertia : array_like, shape (3, 3), optional
-        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
-        homogeneous. The mass stays that of the density.
-    centre : array_like, shape (3,), optional
-        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -116,13 +101,6 @@ class Ring(Turned):
     ----------
     outer, inner, height : float
         Outer and inner radius and height, in m; finite and > 0, the inner radius below the outer one.
-    density : float, default 2500
-        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
-    inertia : array_like, shape (3, 3), optional
-        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
-        homogeneous. The mass stays that of the density.
-    centre : array_like, shape (3,), optional
-        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -166,13 +144,6 @@ class TruncatedCone(Turned):
         Radius of the other face, in m; finite and >= 0. With 0 it is a cone.
     height : float
         Distance of the faces, in m; finite and > 0.
-    density : float, default 2500
-        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
-    inertia : array_like, shape (3, 3), optional
-        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
-        homogeneous. The mass stays that of the density.
-    centre : array_like, shape (3,), optional
-        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -215,13 +186,6 @@ class Egg(Turned):
         In m; finite and > 0, the width at most the length.
     blunt_end, tip : float
         Radii of curvature at the ends in m; > 0 and at most half of the width, one of them less.
-    density : float, default 2500
-        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
-    inertia : array_like, shape (3, 3), optional
-        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
-        homogeneous. The mass stays that of the density.
-    centre : array_like, shape (3,), optional
-        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------

@@ -179,7 +179,18 @@ class RigidBody(AnyBody):
 
 
 class Matter(RigidBody):
-    """A body that is homogeneous, unless its inertia is given."""
+    """A body that is homogeneous, unless its inertia is given.
+
+    Parameters
+    ----------
+    density : float, default 2500
+        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
+    """
 
     inertia: Tensor = None
     centre: Centre = None
@@ -206,8 +217,7 @@ class FromRows(Matter):
         Parameters
         ----------
         path : str or path-like
-            A text file with a row a line, numbers with spaces or commas between them. What follows a ``#`` is
-            a comment.
+            A text file with a row a line, numbers with spaces or commas between them; ``#`` begins a comment.
         scale : float, default 1
             What a unit of the file is in m: 1e-3 for millimetres. > 0.
         density, inertia, centre

@@ -20,15 +20,9 @@ class Spherocylinder(Body):
         Radius R of the cylinder and of its caps, in m; finite and > 0.
     separation : float
         Distance L between the centres of the caps, the length of the cylinder, in m; finite and >= 0.
-    density : float, default 2500
-        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
     wall : float, optional
         Thickness of the wall of a hollow body, in m; at least 10⁻⁶ R and at most R. The cavity is the
-        spherocylinder of the radius R - wall.
-        Mass and inertia are those of the wall.
-    inertia : (float, float) or float, optional
-        Moments of inertia across and about the axis, in kg m², instead of those of the matter, or one number
-        for both; the second at most twice the first. Not together with ``wall``.
+        spherocylinder of the radius R - wall. Mass and inertia are those of the wall.
 
     Examples
     --------

@@ -4,10 +4,10 @@ from typing import Annotated, Self
 
 from pydantic import Field
 
+from restitution._internal.arrays import positive
 from restitution._internal.parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
 from restitution.bodies._hollow import Moments, Wall
-from restitution.bodies._length_width import LengthWidth
 
 
 class Spheroid(Body):
@@ -19,15 +19,10 @@ class Spheroid(Body):
         Semi-axis across the axis of revolution, in m; finite and > 0.
     polar : float
         Semi-axis along the axis of revolution, in m; between 1/1000 and 1000 times ``equatorial``.
-    density : float, default 2500
-        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
     wall : float, optional
         Thickness of the wall of a hollow body, in m; at least 10⁻⁶ of the longer semi-axis and at
-        most the shorter. The cavity is all that is farther below the surface; it is no spheroid.
-        Mass and inertia are those of the wall.
-    inertia : (float, float) or float, optional
-        Moments of inertia across and about the axis, in kg m², instead of those of the matter, or one number
-        for both; the second at most twice the first. Not together with ``wall``.
+        most the shorter. The cavity is all that is farther below the surface; it is no spheroid. Mass and
+        inertia are those of the wall.
 
     Examples
     --------
@@ -45,14 +40,7 @@ class Spheroid(Body):
 
     @classmethod
     def from_length_width(cls, length: float, width: float, *, density: float = 2500.0) -> Self:
-        """Make a spheroid with this length along the axis and this width across it.
-
-        Parameters
-        ----------
-        length, width : float
-            In m, > 0: twice the polar and twice the equatorial semi-axis.
-        density : float
-            In kg/m³, > 0.
+        """Make a spheroid whose length along the axis and width across it, in m, are twice its semi-axes.
 
         Raises
         ------
@@ -65,12 +53,12 @@ class Spheroid(Body):
         >>> rs.Spheroid.from_length_width(6e-2, 4e-2).elongation
         1.5
         """
-        size = LengthWidth(length=length, width=width)
-        if not 1e-3 <= size.length / size.width <= 1e3:
-            allowed = f"between 1/1000 and 1000 times width = {size.width!r} (m)"
+        long, wide = positive("length", length, "m"), positive("width", width, "m")
+        if not 1e-3 <= long / wide <= 1e3:
+            allowed = f"between 1/1000 and 1000 times width = {wide!r} (m)"
             raise ParameterError(wrong("length", length, allowed))
         with in_terms_of(length=length, width=width, density=density):
-            return cls(equatorial=0.5 * size.width, polar=0.5 * size.length, density=density)
+            return cls(equatorial=0.5 * wide, polar=0.5 * long, density=density)
 
     @property
     def elongation(self) -> float:

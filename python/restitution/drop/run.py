@@ -5,13 +5,14 @@ import math
 import re
 import warnings
 from collections.abc import Callable, Mapping
-from textwrap import dedent, indent
+from textwrap import indent
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypedDict, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 from pydantic import ConfigDict, Field, InstanceOf, model_validator
 
+from restitution._internal import text as _text
 from restitution._internal.arrays import FloatArray, check_each
 from restitution._internal.parameters import (
     Allowed,
@@ -94,8 +95,8 @@ def takes_run(kind: type[Surroundings]) -> Callable[[F], F]:
         changed = signature.replace(parameters=[*first.values(), *of_run.values(), *own.values()])
         function.__signature__ = changed  # type: ignore[attr-defined]
         if function.__doc__ and Run.__doc__:  # None under python -OO
-            entries = re.findall(r"^(    (\w+).*(?:\n        .*)*)", Run.__doc__, re.MULTILINE)
-            text = dedent("\n".join(entry for entry, name in entries if name in types))
+            entries = _text.entries(Run.__doc__).items()
+            text = "\n".join(entry for name, entry in entries if name in types)
             function.__doc__ = re.sub(
                 r"^( *)%\(run\)s$",
                 lambda line: indent(text, line[1]),
@@ -126,9 +127,9 @@ class Run(Parameters):
     orientation : {"uniform-angle", "isotropic"} or array of float
         The angle θ between symmetry axis and plane normal at release: uniform in [0, π) (above Eq. 18),
         isotropic, or given in rad, shape (particles,). Its azimuth φ is uniform in [0, 2π), or given beside
-        θ, shape (particles, 2). Of a body without an axis all rotations are alike, "isotropic", which is then
-        the default, or each particle has a quaternion (w, x, y, z), shape (particles, 4), that turns the axes
-        of the body to those of space.
+        θ, shape (particles, 2). Of a rigid body of any shape all rotations are alike, "isotropic", which is
+        then the default, or each particle has a quaternion (w, x, y, z), shape (particles, 4), that turns the
+        axes of the body to those of space.
     spin : array of float, shape (3,) or (particles, 3), or RandomSpin, optional
         Angular velocity ω at release, in rad/s: the same for all, one each, or drawn at random.
     release_velocity : array of float, shape (3,), optional
