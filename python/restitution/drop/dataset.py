@@ -58,6 +58,9 @@ def dataset(
     return xr.Dataset(variables, attrs=attrs)
 
 
+PAPER = {"references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)"}
+
+
 @cache
 def version_here() -> str:
     """Return the version; looking it up takes as long as a small run."""
@@ -76,8 +79,4 @@ def made_here(title: str) -> dict[str, Any]:
 
 def attributes(run: Run, title: str) -> dict[str, Any]:
     """Return the attributes of every result: title, conventions, version, all parameters and the seed."""
-    return {
-        **made_here(title),
-        "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
-        **run.attributes(),
-    }
+    return made_here(title) | PAPER | run.attributes()

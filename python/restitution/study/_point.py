@@ -254,9 +254,5 @@ def _first_impact(run: Run) -> xr.Dataset:
     law = first_impact(run.body, run.standard_law, orientation=run.orientation, **(fall if varies else {}))
     mean = {"long_name": "mean restitution of the first impact"}
     std = {"long_name": "standard deviation of the restitution of the first impact"}
-    return xr.Dataset(
-        {
-            "first_impact_mean": ((), float(law.mean()), mean),
-            "first_impact_std": ((), float(law.std()), std),
-        }
-    )
+    values = {"mean": ((), float(law.mean()), mean), "std": ((), float(law.std()), std)}
+    return xr.Dataset({f"first_impact_{name}": value for name, value in values.items()})

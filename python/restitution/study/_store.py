@@ -25,7 +25,7 @@ from restitution._internal.files import draft_of, there
 from restitution._internal.parameters import Parameters
 from restitution._internal.process import undisturbed
 from restitution.drop.compare import unit_of
-from restitution.drop.dataset import version_here
+from restitution.drop.dataset import PAPER, made_here
 from restitution.study._axes import Axis, Design
 from restitution.study._identity import attribute, check, readable
 from restitution.study._point import Words
@@ -84,13 +84,8 @@ def _fill(path: Path, study: Study, width: int) -> None:
     import zarr
 
     effort, design = study.effort, study.design
-    about = {
-        "title": "Parameter study of the coefficient of restitution of bouncing aspherical bodies",
-        "Conventions": "CF-1.11",
-        "source": f"restitution {version_here()}",
-        "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
-        **attribute(study),
-    }
+    title = "Parameter study of the coefficient of restitution of bouncing aspherical bodies"
+    about = made_here(title) | PAPER | attribute(study)
     group = zarr.create_group(str(path), zarr_format=3, attributes=about)
     for axis in design.axes:
         group.create_array(
