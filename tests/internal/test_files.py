@@ -21,7 +21,6 @@ from restitution._internal.files import (
     content,
     draft_of,
     path_from,
-    remove_old_drafts,
     whole_file,
     whole_folder,
     write,
@@ -409,8 +408,10 @@ def test_what_a_killed_process_left_goes_after_a_day(tmp_path: Path) -> None:
         os.utime(draft, (0, time.time() - 90_000))
     write(tmp_path / "run.nc", "all")
     assert names(tmp_path) == {"run.nc", *(draft.name for draft in left[1:])}
-    remove_old_drafts(tmp_path.parent)
-    assert names(tmp_path) == {"run.nc", left[1].name}
+    write(tmp_path / "other.nc", "all")
+    with whole_folder(tmp_path / "laws") as draft:
+        (draft / "file").touch()
+    assert names(tmp_path) == {"run.nc", "other.nc", "laws", left[1].name}
 
 
 @pytest.mark.parametrize("mask", [0o022, 0o077])

@@ -99,12 +99,7 @@ def positive(name: str, value: Any, unit: str) -> float:
 
 
 def pair(
-    name: str,
-    value: Any,
-    allowed: str,
-    good: Callable[[float, float], bool] = lt,
-    *,
-    unit: str | None = "1",
+    name: str, value: Any, allowed: str, good: Callable[[float, float], bool] = lt, *, unit: str | None = "1"
 ) -> tuple[float, float]:
     """Take two numbers, in this unit, for which `good` holds: unless given, the first is the lower one."""
     ends = reals(name, value, allowed, unit=unit, dimensions=(1,), finite=False)

@@ -50,19 +50,17 @@ def path_from(name: str, value: Any) -> Path:
     return path
 
 
-def check_name(argument: str, path: Path, kind: str) -> None:
-    """Refuse the name of another format than `kind`, and a dash, to other programs the standard output."""
+def path_for(argument: str, value: Any, kind: str) -> Path:
+    """Check the name of a file that is to be written.
+
+    Refuse that of another format than `kind`, and a dash, to other programs the standard output.
+    """
+    path = path_from(argument, value)
     # Any other name will do: what follows the last dot may be part of a number.
     strange = " ".join([_OTHERS, *(own for other, own in _OWN.items() if other != kind)]).split()
     nameless = path.name in ("", "..") and kind != FOLDER
     if nameless or path.suffix.lower() in strange or path.name == "-":
         raise ParameterError(wrong(argument, str(path), f"the name of {kind}"))
-
-
-def path_for(argument: str, value: Any, kind: str) -> Path:
-    """Check the name of a file of this kind that is to be written."""
-    path = path_from(argument, value)
-    check_name(argument, path, kind)
     return path
 
 
@@ -79,9 +77,8 @@ def check_regular(path: Path) -> None:
     """Refuse folders, pipes and devices for libraries that go back and forth in a file, or wait for ever."""
     path.stat()  # whose OSError names what is not there
     if not path.is_file():
-        number = errno.EISDIR if path.is_dir() else errno.EINVAL
-        text = "is a folder" if path.is_dir() else "not a regular file: save it first"
-        raise OSError(number, text, str(path))
+        folder, other = (errno.EISDIR, "is a folder"), (errno.EINVAL, "not a regular file: save it first")
+        raise OSError(*(folder if path.is_dir() else other), str(path))
 
 
 def there(path: Path) -> bool:
@@ -153,7 +150,7 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
         _target(path / name, replace)
     target = Path(os.path.realpath(path))
     place = next(folder for folder in (target, *target.parents) if there(folder))
-    remove_old_drafts(place, target.name)
+    _remove_old_drafts(place, target.name)
     draft = draft_of(place / target.name)
     # To list the draft where no more may be open.
     spare = [os.open(os.devnull, os.O_RDONLY) for _ in range(2)]
@@ -185,10 +182,9 @@ def draft_of(path: Path) -> Path:
     return path.with_name(f".{path.name[:_LONGEST]}.{secrets.token_hex(8)}.part")
 
 
-def remove_old_drafts(folder: Path, name: str | None = None) -> None:
-    """Remove the drafts of a name in a folder, or all below it, that a process left which was killed."""
-    pattern = "**/.*.part" if name is None else f".{glob.escape(name[:_LONGEST])}.*.part"
-    for draft in list(folder.glob(pattern)):
+def _remove_old_drafts(folder: Path, name: str) -> None:
+    """Remove the drafts of a name in a folder that a process left which was killed."""
+    for draft in list(folder.glob(f".{glob.escape(name[:_LONGEST])}.*.part")):
         with suppress(OSError):
             if time.time() - draft.stat().st_mtime > 86_400.0:  # nobody writes for a day
                 shutil.rmtree(draft) if draft.is_dir() else draft.unlink()
@@ -213,7 +209,7 @@ def claim(draft: Path, target: Path) -> None:
 def _begin(path: Path, replace: bool) -> tuple[Path, Path]:
     """Make an empty draft of a file; give also the place that it is to take."""
     target = _target(path, replace, "exists already; replace=True replaces it")
-    remove_old_drafts(target.parent, target.name)
+    _remove_old_drafts(target.parent, target.name)
     draft = draft_of(target)
     try:
         draft.touch(exist_ok=False)

@@ -90,12 +90,10 @@ def shown(value: Any) -> str:
 
 def plain_number(value: Any) -> Any:
     """Make a Python number of a NumPy scalar or 0-d array; what is masked, or a date, stays what it is."""
-    if not isinstance(value, np.generic | np.ndarray) or value.ndim != 0 or value.dtype.kind not in "biuf":
-        return value
-    if np.ma.is_masked(value):
+    if not isinstance(value, np.generic | np.ndarray) or value.ndim != 0 or np.ma.is_masked(value):
         return value
     if value.dtype.kind != "f":
-        return value.item()
+        return value.item() if value.dtype.kind in "biu" else value
     number = float(value)
     return value if math.isinf(number) and np.isfinite(value) else number  # of extended precision
 

@@ -53,7 +53,7 @@ def fit(
     with errors_in_a_line("netCDF4", "scipy.stats"):
         from restitution import fit as fits
         from restitution._internal.datasets import load
-        from restitution._internal.files import LATEX, check, check_apart, check_name, write
+        from restitution._internal.files import LATEX, check, check_apart, path_for, write
         from restitution._internal.parameters import ParameterError, wrong
 
         if family not in _FAMILIES:
@@ -64,7 +64,7 @@ def fit(
             raise ValueError("location: missing; a cusp-mixture needs that of its cusp")
         if table is not None:
             check_apart([data], [table])
-            check_name("table", table, LATEX)
+            path_for("table", table, LATEX)
             check(table, replace=overwrite)
         impacts = load(data)
         function = getattr(fits, family.replace("-", "_"))

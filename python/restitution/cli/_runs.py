@@ -161,7 +161,7 @@ def distribution(
             NETCDF,
             check,
             check_apart,
-            check_name,
+            path_for,
             whole_file,
         )
         from restitution._internal.resources import checked_threads
@@ -180,7 +180,7 @@ def distribution(
         named = {"out": (out, NETCDF), "header": (header, HEADER), "fortran": (fortran, MODULE)}
         for option, (path, kind) in named.items():
             if path is not None:
-                check_name(option, path, kind)
+                path_for(option, path, kind)
         for path in paths:
             check(path, replace=overwrite)
         how = study.run | study.distribution | _given({"velocities": velocities, "given": given})
@@ -267,11 +267,11 @@ def written(
 ) -> None:
     """Do the work, write its result, also where Ctrl-C ended it early, and print a summary."""
     from restitution._internal.datasets import save
-    from restitution._internal.files import NETCDF, check, check_apart, check_name, write
+    from restitution._internal.files import NETCDF, check, check_apart, path_for, write
     from restitution.drop.simulate import SimulationInterrupted
 
     check_apart([run], [out] if table is None else [out, table])
-    check_name("out", out, NETCDF)
+    path_for("out", out, NETCDF)
     check(out, replace=overwrite)
     if table is not None:
         _check_table(table)
@@ -295,10 +295,10 @@ def written(
 
 
 def _check_table(path: Path) -> None:
-    from restitution._internal.files import TABLE, check_name
+    from restitution._internal.files import TABLE, path_for
     from restitution._internal.parameters import ParameterError, wrong
 
-    check_name("table", path, TABLE)
+    path_for("table", path, TABLE)
     if path.suffix not in (".csv", ".parquet"):
         raise ParameterError(wrong("table", str(path), "a name that ends in .csv or .parquet"))
     if path.suffix == ".parquet" and find_spec("pyarrow") is None:

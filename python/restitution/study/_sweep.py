@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import flag, several, whole
-from restitution._internal.files import ZARR, check_name, path_from, there
+from restitution._internal.files import ZARR, path_for, path_from, there
 from restitution._internal.parameters import ParameterError, Problem, shown, wrong
 from restitution._internal.resources import bar as bar_of
 from restitution.study._axes import Design
@@ -106,7 +106,7 @@ def sweep(
     if there(path):
         check(path, wanted)
     else:
-        check_name("out", path, ZARR)
+        path_for("out", path, ZARR)
     with engine(client, threads) as work:
         store, template = opened(path, wanted)
         with _bar(len(points) * wanted.effort.block_tasks, show=progress) as tell:
@@ -162,7 +162,7 @@ def merge(
         if not others:
             text = f" = {shown(str(out))}: there is no such store, and no parts for it"
             raise ParameterError(Problem("out", text))
-        check_name("out", path, ZARR)
+        path_for("out", path, ZARR)
     wanted = study_of(study if study is not None else study_in(path if there(path) else others[0]))
     for part in others:
         check(part, wanted)
