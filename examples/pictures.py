@@ -148,7 +148,7 @@ def strip(style: Style) -> Figure:
 
 
 def grains() -> dict[str, AnyBody]:
-    """Make bodies without an axis."""
+    """Make bodies of many shapes."""
     stone = np.random.default_rng(2).normal(size=(24, 3)) * [3e-3, 2.5e-3, 2e-3]
     return {
         "Clump": rs.Clump(spheres=1e-3 * np.array([(0, 0, 2, 3), (2.5, 0, -1.5, 2.5), (-2, 1, -1.5, 2)])),

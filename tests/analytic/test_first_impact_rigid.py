@@ -1,4 +1,4 @@
-"""The first impact of bodies without an axis: beside the engine, bodies with one, and quadrature."""
+"""The first impact of bodies of any shape: beside the engine, bodies of revolution, and quadrature."""
 
 import pickle
 from functools import lru_cache

@@ -1,4 +1,4 @@
-"""Whole runs of bodies without an axis, impact by impact, beside a general integrator.
+"""Whole runs of bodies of any shape, impact by impact, beside a general integrator.
 
 `reference.rigid_motion` has its own inertia, geometry, events and impulses. Rounding, and the integrator's
 errors, grow from impact to impact; how much is measured with a second solution, which is off by `OFF` at

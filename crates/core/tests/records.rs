@@ -270,7 +270,7 @@ fn the_variables_of_impacts_are_those_that_were_chosen() {
     assert_eq!(found, expected);
 }
 
-/// By default the normal coefficient is recorded if it varies, the state if it is asked for, and of a body without an axis its attitude
+/// By default the normal coefficient is recorded if it varies, the state if it is asked for, and of a body of any shape its attitude
 /// instead of that, and the number of the part that touches.
 #[test]
 fn the_usual_variables_follow_from_the_law() {

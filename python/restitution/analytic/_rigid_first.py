@@ -1,4 +1,4 @@
-"""The distribution of ε at the first impact from rest of a rigid body without an axis."""
+"""The distribution of ε at the first impact from rest of a rigid body of any shape."""
 
 from __future__ import annotations
 

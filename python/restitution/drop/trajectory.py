@@ -59,9 +59,9 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     """Return the exact motion of a particle at any times, from its release to its last recorded impact.
 
     Between impacts the centre of mass moves on a parabola, and a free body of revolution turns about its
-    angular momentum **Λ** at the constant rate Λ/J', its moment of inertia across the axis being J'; a body
-    without an axis turns as Euler's equations say, by elliptic functions. At the time of an impact it is the
-    motion after it.
+    angular momentum **Λ** at the constant rate Λ/J', its moment of inertia across the axis being J'; any
+    other turns as Euler's equations say, by elliptic functions. At the time of an impact it is the motion
+    after it.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
         Over ``time`` and ``component`` (x, y, z, in the frame of the plane): ``position`` of the centre of
         mass in m, relative to the point of the plane under the release, ``velocity`` in m/s, ``axis``, the
         unit vector of the symmetry axis, and ``angular_velocity`` in rad/s; over ``time`` the number of
-        ``impacts`` up to then. For a body without an axis instead of that, over ``quaternion``, ``attitude``.
+        ``impacts`` up to then. Of a body that has no ``angle``, ``attitude`` over ``quaternion`` instead.
 
     Raises
     ------

@@ -7,7 +7,7 @@ const COLUMNS = 14;
 /** Of a rigid body. */
 const FREE = 19;
 
-/** The attitude and ω of a free body without an axis some time after it had these. */
+/** The attitude and ω of a free body of any shape some time after it had these. */
 export type Turn = (attitude: Quaternion, spin: Vector3, time: number) => { attitude: Quaternion; spin: Vector3 };
 
 export interface Flight {

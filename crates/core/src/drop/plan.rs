@@ -135,7 +135,7 @@ impl<'a> Plan<'a> {
         self.run.release_height.draw(self.run.seed, particle as u64)
     }
 
-    /// The attitude at release of a body without an axis, from the axes that it was given in.
+    /// The attitude at release of a rigid body of any shape, from the axes that it was given in.
     pub fn attitude(&self, particle: usize) -> Quaternion {
         let (seed, number) = (self.run.seed, particle as u64);
         self.run.orientation.attitude(seed, number)

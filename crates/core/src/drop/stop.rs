@@ -37,7 +37,7 @@ pub struct Limits {
     pub impacts: usize,
     /// Value of √(2 E_kin/m) below which a particle stops, in √(gR); with 0 none does.
     pub minimum_speed: f64,
-    /// Energy in m g R, of which a frictionless law leaves out the horizontal motion, below which a body without an axis stops; with 0
+    /// Energy in m g R, of which a frictionless law leaves out the horizontal motion, below which a rigid body of any shape stops; with 0
     /// none does.
     pub settled: f64,
 }

@@ -16,7 +16,7 @@ from restitution.bodies import KINDS, Body, of_attributes
 PIXELS = 220
 """Across the picture of a body."""
 TONES = np.array([to_rgb("0.5"), to_rgb("#2F86C6"), to_rgb("#F0A03C")])
-"""Colours of a rod, and of the ends 1 and 2; a body without an axis has that of end 1."""
+"""Colours of a rod, and of the ends 1 and 2; a body of another shape has that of end 1."""
 _LIGHT = np.array([-0.45, 0.7, 0.55])
 """Where the light comes from: right, up and towards the reader."""
 

@@ -21,7 +21,7 @@ pub enum Orientation<'a> {
     Given(&'a [f64]),
     /// θ and φ for each particle, in rad.
     Directions(&'a [[f64; 2]]),
-    /// For bodies without an axis, the rotation of each particle from the axes of the body to those of space: a quaternion (w, x, y, z) of
+    /// For rigid bodies of any shape, the rotation of each particle from the axes of the body to those of space: a quaternion (w, x, y, z) of
     /// any length but 0.
     Attitudes(&'a [[f64; 4]]),
 }
@@ -56,7 +56,7 @@ impl Orientation<'_> {
         }
     }
 
-    /// The attitude of a particle without an axis. A random one is uniform among all rotations: its z axis is that of [`Self::draw`] and
+    /// The attitude of a particle of any shape. A random one is uniform among all rotations: its z axis is that of [`Self::draw`] and
     /// [`Self::azimuth`], about which it is turned by an angle that is uniform as well.
     pub fn attitude(&self, seed: u64, particle: u64) -> Quaternion {
         if let Self::Attitudes(given) = self {

@@ -120,7 +120,7 @@ impl Spin<'_> {
         }
     }
 
-    /// **ω** of a particle without an axis, in rad/s, at an attitude of its principal axes, about which these are its moments of inertia.
+    /// **ω** of a particle of any shape, in rad/s, at an attitude of its principal axes, about which these are its moments of inertia.
     /// Directions that refer to an axis have been refused by then.
     pub fn draw_without_axis(
         &self,
