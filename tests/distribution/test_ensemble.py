@@ -58,7 +58,7 @@ def test_blocks_are_runs_whose_seeds_are_hashed(
     monkeypatch.setattr(_ensemble, "_IMPACTS_PER_ROUND", 60)
     monkeypatch.setattr(_ensemble, "_IMPACTS_AT_A_TIME", 35)
     asked: list[tuple[int, float]] = []
-    monkeypatch.setattr(_ensemble, "check_memory", lambda rows, of_row: asked.append((rows, of_row)))
+    monkeypatch.setattr(_ensemble, "check_size", lambda *about: asked.append(about[2:4]))
     heights = (0.05, 0.055, 0.06)
     ensemble = ensemble_of(heights, particles=23, impacts=10, seed=5, fraction=fraction)
     names = ["impact_velocity", "restitution", *(["rotational_fraction"] if fraction else [])]
