@@ -51,10 +51,7 @@ def path_from(name: str, value: Any) -> Path:
 
 
 def path_for(argument: str, value: Any, kind: str) -> Path:
-    """Check the name of a file that is to be written.
-
-    Refuse that of another format than `kind`, and a dash, to other programs the standard output.
-    """
+    """Check the name of a file to be written: not of another format, nor a dash, as for standard output."""
     path = path_from(argument, value)
     # Any other name will do: what follows the last dot may be part of a number.
     strange = " ".join([_OTHERS, *(own for other, own in _OWN.items() if other != kind)]).split()
@@ -122,10 +119,7 @@ def whole_file(path: Path, *, replace: bool = False) -> Iterator[Path]:
     try:
         yield draft
         _flush(draft)
-        if replace:
-            os.replace(draft, target)
-        else:
-            claim(draft, target)
+        (os.replace if replace else claim)(draft, target)
     except OSError as error:
         _raise_named(error, draft, path)
     finally:

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
 from difflib import get_close_matches
 from reprlib import Repr
 from typing import Annotated, Any, ClassVar, NamedTuple, Self
@@ -110,8 +109,7 @@ Number = Annotated[float, BeforeValidator(_number_itself), Field(strict=True, al
 Whole = Annotated[int, BeforeValidator(_number_itself), Field(strict=True)]
 
 
-@dataclass(frozen=True)
-class Allowed:
+class Allowed(NamedTuple):
     """In an annotation: says in words what a field may hold."""
 
     text: str
@@ -232,9 +230,7 @@ def _allowed(model: type[BaseModel], name: str) -> str:
     """Say in words what the field of a model may hold; every number here is bounded from below."""
     field = model.model_fields[name]
     words = ("text", "gt", "ge", "lt", "le")
-    rules: dict[str, Any] = {
-        key: getattr(one, key) for one in field.metadata for key in words if hasattr(one, key)
-    }
+    rules = {key: getattr(one, key) for one in field.metadata for key in words if hasattr(one, key)}
     if "text" in rules:
         return str(rules["text"])
     about = f" ({field.description})" if field.description else ""

@@ -6,9 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-_ENDING = [
-    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK") if hasattr(signal, name)
-]
+_ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")  # of which a system has some
 
 
 @contextmanager
@@ -16,7 +14,8 @@ def handled(handle: Callable[[int], None]) -> Iterator[None]:
     """Pass signals that end a process to `handle`, except those that are ignored, as under nohup."""
     before: dict[int, Any] = {}
     if threading.current_thread() is threading.main_thread():  # which alone has handlers
-        found = {number: signal.getsignal(number) for number in _ENDING}
+        numbers = [getattr(signal, name) for name in _ENDING if hasattr(signal, name)]
+        found = {number: signal.getsignal(number) for number in numbers}
         before = {number: old for number, old in found.items() if old not in (signal.SIG_IGN, None)}
     try:
         for number in before:

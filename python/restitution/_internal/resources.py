@@ -10,8 +10,7 @@ from restitution._internal.arrays import flag, whole
 from restitution._internal.parameters import ParameterError, TooLargeError, wrong
 
 _MOST_THREADS = 1024
-_LITTLE = 1 << 16
-"""Bytes that any process can have; to ask how many it can have takes milliseconds."""
+_LITTLE = 1 << 16  # bytes that any process can have; to ask how many it can have takes milliseconds
 
 
 def available_memory() -> int:
@@ -33,14 +32,12 @@ def control_groups(root: Path) -> Iterator[int]:
         _, controllers, path = line.split(":", 2)
         if controllers and "memory" not in controllers.split(","):
             continue
-        top = root / ("sys/fs/cgroup/memory" if controllers else "sys/fs/cgroup")
-        names = ("memory.max", "memory.current", "inactive_file")
+        top, names = root / "sys/fs/cgroup", ("memory.max", "memory.current", "inactive_file")
         if controllers:
+            top /= "memory"
             names = ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
-        group = top / path.lstrip("/")
-        for folder in (group, *group.parents):
-            if not folder.is_relative_to(top):
-                break
+        group = Path(path.lstrip("/"))
+        for folder in (top / part for part in (group, *group.parents)):
             with suppress(ValueError):  # there is none, or "max"
                 most, used = (int("".join(_lines(folder / name))) for name in names[:2])
                 cached = [row.split() for row in _lines(folder / "memory.stat")]
@@ -56,23 +53,16 @@ def _lines(path: Path) -> list[str]:
 
 def check_room(what: str, needed: int) -> None:
     """Refuse work that does not fit into memory; raises a MemoryError that names it."""
-    available = available_memory()
-    if needed > available:
+    if needed > (available := available_memory()):
         took, has = (f"{size / 1e6:.0f} MB" for size in (needed, available))
         raise MemoryError(f"{what}: takes {took} of memory, and this process can have {has}")
-
-
-def check_memory(impacts: int, bytes_per_impact: int) -> None:
-    """Refuse records that this process cannot hold; raises a TooLargeError that names what was asked for."""
-    check_size("particles * impacts", impacts, impacts, bytes_per_impact, "impacts")
 
 
 def check_size(name: str, value: Any, number: int, bytes_of_each: int, what: str) -> None:
     """Refuse an argument by which an array is larger than this process can hold; raises a TooLargeError."""
     if number * bytes_of_each < _LITTLE:
         return
-    available = available_memory()
-    if number * bytes_of_each > available:
+    if number * bytes_of_each > (available := available_memory()):
         allowed = f"at most {available // bytes_of_each:.4g} {what}, which this process can hold"
         raise TooLargeError(wrong(name, value, allowed))
 

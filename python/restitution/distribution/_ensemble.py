@@ -9,7 +9,7 @@ import numpy as np
 
 from restitution import _core
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution._internal.resources import check_memory, checked_threads
+from restitution._internal.resources import check_size, checked_threads
 from restitution.distribution._table import Floats
 from restitution.drop.release import RandomHeight, RandomSpin
 from restitution.drop.run import Run
@@ -95,7 +95,8 @@ class Ensemble:
         """
         names = ["impact_velocity", "restitution", *(["rotational_fraction"] if self.fraction else [])]
         most = max(1, _IMPACTS_AT_A_TIME // self.run.impacts)
-        check_memory(min(most, self.run.particles) * self.run.impacts, _core.bytes_per_impact(names))
+        rows = min(most, self.run.particles) * self.run.impacts
+        check_size("particles * impacts", rows, rows, _core.bytes_per_impact(names), "impacts")
         for runs in self._runs(stream, share[1]):
             first = 0
             for parts in _gathered(runs, share[0], most):

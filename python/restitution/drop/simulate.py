@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, Unpack, get_args
 
 from restitution import _core
 from restitution._internal.parameters import ParameterError, wrong
-from restitution._internal.resources import check_memory, checked_threads, progress_bar
+from restitution._internal.resources import check_size, checked_threads, progress_bar
 from restitution.bodies import AnyBody
 from restitution.drop.run import Run, RunArguments, takes_run
 from restitution.laws import CollisionLaw
@@ -173,7 +173,8 @@ def simulate_run(
     state = checked_record(record) == "state"
     columns = _core.columns(run.body.compiled, run.law.compiled, state)
     settled = settling_height(run) if checked_until(until) else 0.0
-    check_memory(run.particles * run.impacts, _core.bytes_per_impact(columns) + state * POSITION)
+    room, rows = _core.bytes_per_impact(columns) + state * POSITION, run.particles * run.impacts
+    check_size("particles * impacts", rows, rows, room, "impacts")
     with progress_bar("simulate", run.particles, "particles", show=progress) as tell:
         parameters = run.parameters() | {"settled": settled}
         table, interrupted = _core.simulate(parameters, number, tell, columns=columns)

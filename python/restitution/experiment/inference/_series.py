@@ -10,7 +10,7 @@ import xarray as xr
 
 from restitution._internal.arrays import check_each
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution._internal.resources import check_memory
+from restitution._internal.resources import check_size
 from restitution.bodies import Body
 from restitution.drop.recorded import check_successive
 from restitution.drop.run import Run
@@ -220,7 +220,8 @@ class Series:
     def check_release(self, body: Body, law: Law, particles: int) -> None:
         """Refuse a fall from so low that a part of the body would be in the plane, and too many particles."""
         self._run(body, law, 1, seed=1)
-        check_memory(particles * self.errors.size, _BYTES)
+        rows = particles * self.errors.size
+        check_size("particles * impacts", rows, rows, _BYTES, "impacts")
 
     def _run(self, body: Body, law: Law, particles: int, seed: int) -> Run:
         return Run(
