@@ -1,7 +1,7 @@
 """`python -m benchmarks.impulse`: how exact the impulse of Coulomb's law is where the slip turns, as a table.
 
-The impacts and their impulses to 28 digits stand in crates/core/tests/turning/random.txt, which
-`python crates/core/tests/turning/reference.py 1 110` draws and solves by Taylor series, in ten minutes.
+The impacts and their impulses to 28 digits stand in crates/core/tests/friction/random.txt, which
+`python crates/core/tests/friction/reference.py 1 110` draws and solves by Taylor series, in ten minutes.
 Slip, arms, inertia, friction and restitution are random; a tenth each of the components of the slip and of
 the speeds is smaller by up to twelve orders of magnitude.
 """
@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 import restitution as rs
 
-REFERENCES = Path(__file__).parents[1] / "crates/core/tests/turning/random.txt"
+REFERENCES = Path(__file__).parents[1] / "crates/core/tests/friction/random.txt"
 HYPOTHESES = {"s": "stronge", "p": "poisson", "n": "newton"}
 
 

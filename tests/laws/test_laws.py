@@ -65,7 +65,7 @@ def test_turning_slip_is_solved_alike_by_two_references() -> None:
 
     The ends that SciPy finds are right to 1e-15 of the whole path, which is too much for the slowest impacts.
     """
-    text = (Path(__file__).parents[2] / "crates/core/tests/turning/random.txt").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[2] / "crates/core/tests/friction/random.txt").read_text(encoding="utf-8")
     names = {"s": "stronge", "p": "poisson", "n": "newton"}
     for line in text.splitlines()[::10]:
         hypothesis, *numbers = line.split()

@@ -150,8 +150,8 @@ def test_the_two_references_agree(
 
 
 def test_friction_for_any_matrix_has_thirty_digits() -> None:
-    """DOP853 beside Taylor series, `general/reference.py` of the core; four are pressed twice."""
-    path = Path(__file__).parents[2] / "crates/core/tests/general/reference.txt"
+    """DOP853 beside Taylor series, `friction/reference.py` of the core; four are pressed twice."""
+    path = Path(__file__).parents[2] / "crates/core/tests/friction/any.txt"
     for line in path.read_text(encoding="utf-8").splitlines():
         hypothesis, *numbers = line.split()
         xx, yy, nn, xy, nx, ny, x, y, n, mu, normal, *expected = map(float, numbers)

@@ -1,5 +1,4 @@
-//! The laws for any K: beside the oracle, beside an independent solution to 30 digits, in closed form where there is one, and beside the
-//! law of bodies of revolution.
+//! The laws for any K: beside the oracle, in closed form where there is one, and beside the law of bodies of revolution.
 
 use crate::contacts;
 use crate::contacts::{HYPOTHESES, chatterjee_ruina, coulomb, frictionless};
@@ -287,29 +286,6 @@ fn the_algebraic_laws_are_the_oracles() {
         }
     }
     distances.below(1.0, 20.0);
-}
-
-/// 26 contacts beside Taylor series with 30 digits in unrotated axes (`general/reference.py`), four of which are pressed
-/// together again before their restitution is over.
-#[test]
-fn coulomb_is_the_reference_with_thirty_digits() {
-    let mut distances = Distances::default();
-    for line in include_str!("general/reference.txt").lines() {
-        let (name, numbers) = line.split_once(' ').unwrap();
-        let x: Vec<f64> = numbers.split(' ').map(|x| x.parse().unwrap()).collect();
-        let hypothesis = Hypothesis::named(name).unwrap();
-        let contact = Contact {
-            response: [[x[0], x[3], x[4]], [x[3], x[1], x[5]], [x[4], x[5], x[2]]],
-            velocity: [x[6], x[7], x[8]],
-        };
-        let law = coulomb(x[10], x[9], hypothesis);
-        let found = answer(&law, &contact);
-        let expected = [x[11], x[12], x[13]];
-        let off = norm(minus(array(found.impulse), expected)) / norm(expected);
-        assert!(off <= 1e-12, "{line} {found:?} {off:e}");
-        distances.add(&found, expected, &contact.response, || line.to_owned());
-    }
-    distances.below(0.5, 20.0);
 }
 
 /// In the frame of a body of revolution, z along the normal and x along the horizontal direction of its axis, it is the law in lanes.

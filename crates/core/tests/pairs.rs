@@ -2,11 +2,12 @@
 
 use restitution_core::pair::{
     ENCOUNTER, Encounters, Ending, Hit, Meeting, PairState, PairTable, PairVariable, Partner,
-    encounter,
+    Trouble, encounter,
 };
 use restitution_core::{
-    AnyBody, Dumbbell, Frictionless, Law, Level, LoadedSphere, Matter, Monitor, Quaternion,
-    Resources, Rigid, RigidBall, TangentialRestitution, Vector, Viscoelastic,
+    AnyBody, Coulomb, Dumbbell, Fault, Frictionless, Hypothesis, ImpulseFunction, Law, Level,
+    LoadedSphere, Matter, Monitor, Quaternion, Resources, Rigid, RigidBall, TangentialRestitution,
+    Vector, Viscoelastic,
 };
 
 /// Of mass 1 and R = 1.
@@ -34,6 +35,23 @@ fn clump() -> Partner {
     .collect();
     let body = Rigid::clump(&balls, 0.1, Matter::Sum).unwrap();
     Partner::new("body", AnyBody::from(&body)).unwrap()
+}
+
+/// A law of one's own whose impulse is no number.
+struct NoNumber;
+
+impl ImpulseFunction for NoNumber {
+    fn name(&self) -> &'static str {
+        "NoNumber"
+    }
+
+    fn may_pull(&self) -> bool {
+        true
+    }
+
+    fn impulse(&self, _: [[f64; 3]; 3], _: Vector) -> Result<Vector, Fault> {
+        Ok(Vector::new(0.0, 0.0, f64::NAN))
+    }
 }
 
 /// Two of each kind of convex part: an ellipsoid, a spherocylinder, a box and a cylinder.
@@ -319,6 +337,28 @@ fn a_plane_is_hit_by_everything() {
         assert!(hit[6].abs() < 1e-12 && hit[9] > 0.0);
         assert!((hit[11] / hit[10] - 0.9).abs() < 1e-12);
     }
+}
+
+/// A law of one's own whose impulse is no number, and friction at a slip so fast that its size overflows: no state of NaN goes on.
+#[test]
+fn an_impulse_that_is_no_number_ends_an_encounter() {
+    let (ball, plane) = (dumbbell(0.0), Partner::plane());
+    let friction = Coulomb::new(0.3, Hypothesis::Stronge).unwrap();
+    let at = |z: f64, speed: f64| PairState {
+        position: Vector::new(0.0, 0.0, z),
+        velocity: Vector::new(speed, 0.0, -speed),
+        attitude: Quaternion::IDENTITY,
+        spin: Vector::default(),
+    };
+    let end = |law: &Law<'_>, speed: f64| {
+        let states = [at(2.0, speed), at(0.0, 0.0)];
+        encounter([&ball, &plane], law, states, |_| 0.5, |_| ())
+    };
+    let sound = Law::new(0.9, friction).unwrap();
+    assert_eq!(end(&sound, 1.0).unwrap().contacts, 1);
+    assert_eq!(end(&sound, 1e308), Err(Trouble::Unconverged));
+    let own = end(&Law::custom(&NoNumber), 1.0);
+    assert!(matches!(own, Err(Trouble::Fault(Fault::NotFinite(_)))));
 }
 
 /// Balls on an axis without friction, which are followed in lanes, end as those that are followed one by one: dumbbells of any aspect ratio, a sphere whose

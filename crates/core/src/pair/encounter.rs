@@ -75,7 +75,7 @@ pub struct Outcome<T = PairState> {
 /// Why an encounter cannot be followed.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Trouble {
-    /// The search does not converge.
+    /// The search, or the friction of an impact, does not converge.
     Unconverged,
     /// A law of one's own failed.
     Fault(Fault),
@@ -369,6 +369,9 @@ impl Following<'_, '_> {
         let chance = (self.law.deviation > 0.0).then(|| (self.chance)(drawn));
         let answer = self.law.answer_drawn(&compliance, met, chance);
         let answer = answer.map_err(Trouble::Fault)?;
+        if answer.impulse.z.is_nan() {
+            return Err(Trouble::Unconverged);
+        }
         let impulse = frame.rotate(answer.impulse);
         (self.hit)(&Hit {
             number,

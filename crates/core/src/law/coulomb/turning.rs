@@ -14,7 +14,7 @@
 
 mod queue;
 #[cfg(test)]
-#[path = "../../../tests/turning/parts.rs"]
+#[path = "../../../tests/friction/parts.rs"]
 mod tests;
 
 use super::{Coulomb, Hypothesis};
@@ -377,7 +377,7 @@ const FAR: f64 = 1e30;
 
 /// Largest |s| in the series of artanh.
 const STEEP: f64 = 0.45;
-/// artanh(s)/s as a polynomial in s², |s| ≤ 0.45; error 10⁻¹⁷ (`tests/turning/tables.py`).
+/// artanh(s)/s as a polynomial in s², |s| ≤ 0.45; error 10⁻¹⁷ (`tests/friction/tables.py`).
 const ARTANH: [f64; 13] = [
     1.0,
     0.3333333333333263,
@@ -641,7 +641,7 @@ fn arrive<S: Simd, const K: usize>(
     at.across = at.across + lost / rates.ww;
 }
 
-/// Nodes and weights of the Gauss–Legendre quadrature of 20 nodes on [0, 1] (`tests/turning/tables.py`).
+/// Nodes and weights of the Gauss–Legendre quadrature of 20 nodes on [0, 1] (`tests/friction/tables.py`).
 const NODES: [(f64, f64); 20] = [
     (0.0034357004074525377, 0.008807003569576059),
     (0.018014036361043106, 0.02030071490019347),
