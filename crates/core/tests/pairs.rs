@@ -171,9 +171,17 @@ fn momenta(bodies: [&Partner; 2], states: &[PairState; 2]) -> [Vector; 2] {
     for (body, state) in bodies.into_iter().zip(states) {
         let momentum = state.velocity * body.mass();
         sums[0] = sums[0] + momentum;
-        sums[1] = sums[1] + state.position.cross(momentum) + body.angular_momentum(state);
+        sums[1] = sums[1] + state.position.cross(momentum) + angular_momentum(body, state);
     }
     sums
+}
+
+/// About the centre of mass, in the axes of space.
+fn angular_momentum(body: &Partner, state: &PairState) -> Vector {
+    let principal = state.attitude * body.axes();
+    let Vector { x, y, z } = principal.inverse().rotate(state.spin);
+    let [a, b, c] = body.moments();
+    principal.rotate(Vector::new(a * x, b * y, c * z))
 }
 
 fn energy(bodies: [&Partner; 2], states: &[PairState; 2]) -> f64 {

@@ -170,7 +170,7 @@ class Run(Parameters):
 
     @model_validator(mode="before")
     @classmethod
-    def _isotropic_without_an_axis(cls, given: Any) -> Any:
+    def _isotropic_in_any_shape(cls, given: Any) -> Any:
         if isinstance(given, dict) and isinstance(given.get("body"), RigidBody):
             return {"orientation": "isotropic"} | given
         return given

@@ -88,8 +88,8 @@ def simulate(
         contact. Over particles: ``impacts``, ``stop_reason``, ``release_angle``; where heights are
         drawn also ``release_height``; with spin, release velocity or
         incline also ``release_azimuth`` and, over (particle, component), ``release_spin``.
-        A body without a symmetry axis has no ``angle``, ``release_angle`` and ``release_azimuth``; its
-        ``contact`` is the number of the ball or vertex that touched, from 1, and ``release_attitude``, over
+        A rigid body of any shape has no ``angle``, ``release_angle`` and ``release_azimuth``; its ``contact``
+        is the number of the sphere, vertex or arc that touched, from 1, and ``release_attitude``, over
         (particle, quaternion), says how it was released. With
         ``record="state"`` also, over (particle, impact, component), ``position`` and ``axis`` at the impact,
         or ``attitude``, the quaternion (w, x, y, z) that turns the axes of the body to those of space,

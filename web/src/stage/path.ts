@@ -21,7 +21,7 @@ export interface Flight {
   spin: Vector3;
   /** Energy of rotation over the mass, m²/s². */
   rotation: number;
-  /** The sphere, ball or vertex that touched, 0 at release. */
+  /** The sphere, vertex or arc that touched, 0 at release. */
   sphere: number;
   /** Where a rigid body touched, from the centre of mass. */
   arm: Vector3;

@@ -90,7 +90,7 @@ impl<S: ConvexSurface> Convex<S> {
 
     /// As [`crate::shape::RigidSurface`]'s.
     #[inline(always)]
-    pub(super) fn past(
+    pub(super) fn backward(
         &self,
         part: usize,
         at: &NormalMotion,

@@ -108,7 +108,7 @@ impl<'a> FirstContact<'a> {
             certain: 0.0,
             time: 0.0,
             near: departure.map(|left| (left.part, 0.0)),
-            looks_ahead: body.skin.looks_back(),
+            looks_ahead: body.surface.looks_back(),
         }
     }
 
@@ -183,8 +183,8 @@ impl<'a> FirstContact<'a> {
             return false;
         };
         let at = self.look(0.0).at;
-        let skin = &self.body.skin;
-        skin.acceleration(left.part, &at) <= 0.0 && !skin.another_touches(left, &at)
+        let surface = &self.body.surface;
+        surface.acceleration(left.part, &at) <= 0.0 && !surface.another_touches(left, &at)
     }
 
     /// From a look ahead of what is certain: a contact, or that the body is to be looked at elsewhere, or that nothing touched up to now.
@@ -194,16 +194,19 @@ impl<'a> FirstContact<'a> {
             return ControlFlow::Continue(());
         };
         let since = now.time - self.certain;
-        let past = self.body.skin.past(part, &now.at, &self.bounds, since);
-        let Some(ago) = past.clear else {
+        let backward = self
+            .body
+            .surface
+            .backward(part, &now.at, &self.bounds, since);
+        let Some(ago) = backward.clear else {
             (self.time, self.looks_ahead) = (self.certain, false);
             return ControlFlow::Break(None);
         };
         self.certain = now.time - ago;
-        let ahead = past.gap.closes();
+        let ahead = backward.gap.closes();
         let end = now.time + ahead;
         if self.bound() * ahead * ahead <= INVISIBLE
-            && (ahead < 0.0 || past.gap.rate < 0.0 && ahead <= LAST * end)
+            && (ahead < 0.0 || backward.gap.rate < 0.0 && ahead <= LAST * end)
             && end <= only_until
         {
             let rotation = self.body.top.expanded(now.attitude, now.spin, ahead);
@@ -214,7 +217,7 @@ impl<'a> FirstContact<'a> {
             }));
         }
         // Nothing more is to be known here where the contact is, or if there was one since `certain`.
-        self.time = match self.expected(now, &past.gap, only_until) {
+        self.time = match self.expected(now, &backward.gap, only_until) {
             Some(contact) => contact,
             None if ago > 0.0 => self.certain,
             None => return ControlFlow::Continue(()),
@@ -225,7 +228,7 @@ impl<'a> FirstContact<'a> {
     /// The certified step from a time up to which nothing touched: to a contact, or to where the body is looked at next.
     #[inline(always)]
     fn step(&mut self, now: &Look) -> Option<Touch> {
-        let (from, skin) = (now.time, &self.body.skin);
+        let (from, surface) = (now.time, &self.body.surface);
         let left = self.departure.filter(|_| from == 0.0);
         let clear = if from < self.up {
             self.up - from
@@ -235,7 +238,7 @@ impl<'a> FirstContact<'a> {
         let beside = self
             .near
             .map(|(part, only_until)| (part, only_until - from));
-        let step = skin.step(&now.at, &self.bounds, left, beside, clear);
+        let step = surface.step(&now.at, &self.bounds, left, beside, clear);
         let end = from + step.length;
         let square = step.length * step.length;
         if step.closes && step.bound * square <= INVISIBLE && step.length <= LAST * end {
@@ -260,14 +263,14 @@ impl<'a> FirstContact<'a> {
         self.time = self.certain;
         let only_until = from + step.only_until;
         self.near = Some((step.part, only_until));
-        let looks_ahead = std::mem::replace(&mut self.looks_ahead, skin.looks_back());
+        let looks_ahead = std::mem::replace(&mut self.looks_ahead, surface.looks_back());
         if !looks_ahead || only_until <= self.certain {
             return None;
         }
         let gap = GapExpansion {
             width: step.width,
             rate: step.rate,
-            acceleration: skin.acceleration(step.part, &now.at),
+            acceleration: surface.acceleration(step.part, &now.at),
         };
         // Or else almost as far behind `certain` as that is from here.
         let further = self.certain + BACK * (self.certain - from);

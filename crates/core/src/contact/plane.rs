@@ -17,7 +17,7 @@
 //!
 //! Steps to the first root of these bounds converge quadratically to the contact. The same bounds hold backward in time, with −f′ for f′ and −**n**′
 //! for **n**′, so that the search may look on behind a step: where f, f′ and f″ expect the contact, or else almost as far again. If the bound from
-//! there is positive where the step ended, nothing touched in between ([`RigidSurface::past`]), or an overlap began there once only, as late as the bound
+//! there is positive where the step ended, nothing touched in between ([`RigidSurface::backward`]), or an overlap began there once only, as late as the bound
 //! says; if not, the search goes on at the end of the step. Where the contact is so near that the bound will be positive, the body is looked at
 //! there without a step before. To where f″ expects it the search converges with the third order. It ends when what is left of the gap is below
 //! the resolution. An overlap at the end of a step is rounding: one that approaches is a contact now, one that separates is none.
@@ -136,14 +136,14 @@ impl RigidSurface {
 
     /// When in the time `since` before this one a part can have touched.
     #[inline(always)]
-    pub(crate) fn past(
+    pub(crate) fn backward(
         &self,
         part: usize,
         at: &NormalMotion,
         turn: &SpinBounds,
         since: f64,
     ) -> BackwardBound {
-        each_surface!(self, surface => surface.past(part, at, turn, since))
+        each_surface!(self, surface => surface.backward(part, at, turn, since))
     }
 
     /// f″ of a part.
@@ -221,7 +221,13 @@ impl BallTree {
 
     /// As [`RigidSurface`]'s.
     #[inline(always)]
-    fn past(&self, part: usize, at: &NormalMotion, turn: &SpinBounds, since: f64) -> BackwardBound {
+    fn backward(
+        &self,
+        part: usize,
+        at: &NormalMotion,
+        turn: &SpinBounds,
+        since: f64,
+    ) -> BackwardBound {
         #[cfg(test)]
         evaluations::add(Evaluation::Gap);
         let point = &self.points()[part];
@@ -290,8 +296,8 @@ mod tests {
         let (mut exact, mut alone) = (0, 0);
         for count in [1, 2, 8, 9, 16, 17, 100, 1000, 5000] {
             for seed in 0..40 {
-                let skin = RigidSurface::Balls(balls(seed, count));
-                let RigidSurface::Balls(balls) = &skin else {
+                let surface = RigidSurface::Balls(balls(seed, count));
+                let RigidSurface::Balls(balls) = &surface else {
                     unreachable!()
                 };
                 let up = vector(seed, 1_000_000);
@@ -302,7 +308,7 @@ mod tests {
                     .iter()
                     .map(lowest)
                     .fold(f64::NEG_INFINITY, f64::max);
-                assert!((skin.support(up) - support).abs() <= 1e-15);
+                assert!((surface.support(up) - support).abs() <= 1e-15);
                 for (height, rate) in [
                     (0.0, -1.0),
                     (1e-9, -0.3),
@@ -330,7 +336,7 @@ mod tests {
                         .map(length)
                         .fold(f64::INFINITY, f64::min);
                     let near = (seed % 3 == 0).then_some((0, 0.0));
-                    let step = skin.step(&at, turn, None, near, f64::INFINITY);
+                    let step = surface.step(&at, turn, None, near, f64::INFINITY);
                     assert!(step.length <= least && step.length >= ENOUGH * least);
                     let others = balls.points().iter().enumerate();
                     let others = others.filter(|&(part, _)| part != step.part);
@@ -339,10 +345,10 @@ mod tests {
                             .clone()
                             .all(|(_, point)| length(point) >= step.only_until)
                     );
-                    let cut = skin.step(&at, turn, None, near, 0.25 * least);
+                    let cut = surface.step(&at, turn, None, near, 0.25 * least);
                     assert!(cut.length == 0.25 * least && (!cut.closes || least == 0.0));
                     if step.only_until > step.length {
-                        let same = skin.step(
+                        let same = surface.step(
                             &at,
                             turn,
                             None,
@@ -368,7 +374,7 @@ mod tests {
                         let (width, rate) = point.opening(&at);
                         part != step.part && width <= TOUCHING && rate < still
                     });
-                    assert_eq!(skin.another_touches(left, &at), touches);
+                    assert_eq!(surface.another_touches(left, &at), touches);
                 }
             }
         }

@@ -243,7 +243,7 @@ variables! {
 
     part: i32 {
         name: "contact",
-        text: "number of the ball or vertex that touched, from 1; 0: no impact",
+        text: "number of the sphere, vertex or arc that touched, from 1; 0: no impact",
         when: When::HasNoAxis
     } = |impact, _plan| impact.part;
 

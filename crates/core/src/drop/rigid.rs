@@ -151,7 +151,7 @@ impl Bouncing<'_> {
         let pull = Vector::new(self.slope, 0.0, -1.0) * GRAVITY;
         let arm = self
             .body
-            .skin
+            .surface
             .nearest(touch.part, normal, normal.cross(spin));
         Ok(Landing {
             time,
@@ -247,7 +247,7 @@ impl Bouncing<'_> {
             rotation: one(rotation),
             energy_before: one(energy_before),
             energy_after: one(energy_before + bounce.gain),
-            part: one((self.body.skin.number(contact.part) + 1) as f64),
+            part: one((self.body.surface.number(contact.part) + 1) as f64),
             approach: one(bounce.approach),
             pose: RigidPose {
                 body: self.body,
@@ -411,26 +411,29 @@ mod tests {
                     FirstContact::new(body, fall, (attitude, spin), None)
                 };
                 let now = from(0.0).look(time).at;
-                let low = body.skin.support(now.up) - now.height + 0.02 * (width - 0.5);
+                let low = body.surface.support(now.up) - now.height + 0.02 * (width - 0.5);
                 let mut flight = from(low);
                 let now = flight.look(time).at;
-                let part = body.skin.step(&now, turn, None, None, f64::INFINITY).part;
+                let part = body
+                    .surface
+                    .step(&now, turn, None, None, f64::INFINITY)
+                    .part;
                 let mut gap = |time: f64| {
                     let at = flight.look(time).at;
-                    at.height + at.up.dot(body.skin.nearest(part, at.up, at.turning))
+                    at.height + at.up.dot(body.surface.nearest(part, at.up, at.turning))
                 };
-                let past = body.skin.past(part, &now, turn, since);
-                assert!((gap(time) - past.gap.width).abs() < 1e-14, "{name}");
-                if body.skin.looks_back() {
+                let backward = body.surface.backward(part, &now, turn, since);
+                assert!((gap(time) - backward.gap.width).abs() < 1e-14, "{name}");
+                if body.surface.looks_back() {
                     let [before, here, after] = [-1e-4, 0.0, 1e-4].map(|s| gap(time + s));
                     let second = (before - 2.0 * here + after) * 1e8;
-                    let error = (second - past.gap.acceleration).abs();
+                    let error = (second - backward.gap.acceleration).abs();
                     assert!(
                         error < 1e-4 * (1.0 + turn.whole * turn.whole),
                         "{name}: {error}"
                     );
                 }
-                if let Some(ago) = past.clear {
+                if let Some(ago) = backward.clear {
                     clear += 1;
                     overlaps += i32::from(ago > 0.0);
                     for k in 0..=20 {

@@ -105,9 +105,8 @@ impl Lasting<'_> {
         let arms = [first, first + apart];
         let moves = one.velocity - two.velocity + one.moves(arms[0]) - two.moves(arms[1]);
         let along = |i: usize| {
-            let body = self.bodies[i];
-            let torque = states[i].attitude.inverse().rotate(arms[i].cross(normal));
-            body.inverse_mass + torque.dot(scaled(torque, body.inverse_moments))
+            let [torque, change] = states[i].twist(self.bodies[i], arms[i], normal);
+            self.bodies[i].inverse_mass + torque.dot(change)
         };
         Touching {
             normal,
@@ -138,20 +137,15 @@ impl Lasting<'_> {
         let mut change = [0.0; 26];
         for (i, sign) in [(0, 1.0), (1, -1.0)] {
             let (state, body) = (&states[i], self.bodies[i]);
-            let torque = state
-                .attitude
-                .inverse()
-                .rotate(touching.arms[i].cross(force));
-            let spin =
-                scaled(torque, body.inverse_moments).mul_add(sign, body.top.change(state.spin));
-            let Vector { x, y, z } = state.spin * 0.5;
-            let turning = state.attitude * Quaternion::new(0.0, x, y, z);
-            let rates = FreeBody {
+            let mut rates = FreeBody {
                 position: state.velocity,
-                velocity: force * (sign * body.inverse_mass),
-                attitude: turning,
-                spin,
+                velocity: Vector::default(),
+                attitude: state.attitude,
+                spin: body.top.change(state.spin),
             };
+            rates.push(body, touching.arms[i], force, sign);
+            let Vector { x, y, z } = state.spin * 0.5;
+            rates.attitude = state.attitude * Quaternion::new(0.0, x, y, z);
             write(&rates, &mut change[13 * i..]);
         }
         (change, presses)
@@ -176,16 +170,12 @@ impl Lasting<'_> {
         moved(&mean, 1.0)
     }
 
-    /// Whether the gap is closed, and no other parts overlap.
+    /// True if the gap is closed, and no other parts overlap.
     fn is_closed(&self, now: &Numbers) -> bool {
         let states = bodies(now);
         let width = self.search.narrowest(&mut flight(self.bodies, &states));
         width.abs() < OPEN * self.search.size
     }
-}
-
-fn scaled(v: Vector, [x, y, z]: [f64; 3]) -> Vector {
-    Vector::new(v.x * x, v.y * y, v.z * z)
 }
 
 fn write(state: &FreeBody, row: &mut [f64]) {

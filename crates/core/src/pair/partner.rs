@@ -127,13 +127,6 @@ impl Partner {
         free.state(self)
     }
 
-    /// The angular momentum about the centre of mass, in the axes of space.
-    pub fn angular_momentum(&self, state: &PairState) -> Vector {
-        let principal = state.attitude * self.axes;
-        self.top
-            .momentum(principal, principal.inverse().rotate(state.spin))
-    }
-
     /// The kinetic energy of the centre of mass.
     #[inline(always)]
     pub fn translational_energy(&self, velocity: Vector) -> f64 {
@@ -243,13 +236,22 @@ impl FreeBody {
         Compliance::of_body(1.0 / body.inverse_mass, &inverse, back.rotate(arm))
     }
 
+    /// The torque of an impulse at a point, and the change of ω by it, in the principal axes.
+    #[inline(always)]
+    pub(super) fn twist(&self, body: &Partner, arm: Vector, impulse: Vector) -> [Vector; 2] {
+        let torque = self.attitude.inverse().rotate(arm.cross(impulse));
+        let [x, y, z] = body.inverse_moments;
+        [
+            torque,
+            Vector::new(x * torque.x, y * torque.y, z * torque.z), // (11)
+        ]
+    }
+
     /// The change by an impulse at a point.
     #[inline(always)]
     pub fn push(&mut self, body: &Partner, arm: Vector, impulse: Vector, sign: f64) {
         self.velocity = impulse.mul_add(sign * body.inverse_mass, self.velocity);
-        let torque = self.attitude.inverse().rotate(arm.cross(impulse));
-        let [x, y, z] = body.inverse_moments;
-        let change = Vector::new(x * torque.x, y * torque.y, z * torque.z); // (11)
+        let [_, change] = self.twist(body, arm, impulse);
         self.spin = change.mul_add(sign, self.spin);
     }
 }

@@ -240,7 +240,7 @@ struct Encountered {
     first: Option<Hit>,
 }
 
-/// How many numbers a variable has.
+/// The number of components of a variable, of both bodies together.
 pub fn width(&(.., parts, each): &PairVariable) -> usize {
     parts * (1 + usize::from(each))
 }

@@ -175,7 +175,7 @@ impl Piece {
         Some(Self::convex(corners, features, Symmetric::default()))
     }
 
-    /// Whether it is a body of revolution about the principal axis of this number.
+    /// True of a body of revolution about the principal axis of this number.
     pub(crate) fn is_round_about(&self, axis: usize) -> bool {
         let [_, f, g] = around(axis);
         let on = |v: &Vector| v.dot(f) == 0.0 && v.dot(g) == 0.0;

@@ -103,7 +103,7 @@ impl Rigid {
 
     /// Returns the rims of a solid of revolution that can touch, (z, r) in m, in the order of their numbers.
     pub fn rims(&self) -> Vec<[f64; 2]> {
-        let RigidSurface::Bands(convex) = &self.skin else {
+        let RigidSurface::Bands(convex) = &self.surface else {
             return Vec::new();
         };
         // The distance of the bands' origin from that of the axes is the same in both.

@@ -58,7 +58,7 @@ pub struct Rigid {
     /// The principal moments over mR².
     pub top: Top,
     /// The parts that can touch, in units of R and the principal axes.
-    pub(crate) skin: RigidSurface,
+    pub(crate) surface: RigidSurface,
     pub(crate) extent: Extent,
 }
 
@@ -199,7 +199,7 @@ impl Rigid {
     /// # Errors
     /// [`Error::Memory`].
     pub fn balls(&self) -> Result<Vec<RigidBall>, Error> {
-        let RigidSurface::Balls(balls) = &self.skin else {
+        let RigidSurface::Balls(balls) = &self.surface else {
             return Ok(Vec::new());
         };
         let none = RigidBall {
@@ -220,17 +220,17 @@ impl Rigid {
     pub(super) fn new(
         inertia: Inertia,
         unit: f64,
-        skin: impl FnOnce(Quaternion) -> Result<RigidSurface, Error>,
+        surface: impl FnOnce(Quaternion) -> Result<RigidSurface, Error>,
     ) -> Result<Self, Error> {
         let (top, axes) = principal(&inertia, unit)?;
-        let skin = skin(axes)?;
-        let extent = each_surface!(&skin, _balls => Extent::Balls, _convex => Extent::Hull);
+        let surface = surface(axes)?;
+        let extent = each_surface!(&surface, _balls => Extent::Balls, _convex => Extent::Hull);
         Ok(Self {
             inertia,
             unit,
             axes,
             top,
-            skin,
+            surface,
             extent,
         })
     }
@@ -245,7 +245,7 @@ impl Rigid {
     /// # Errors
     /// Unless the mass is positive, and the tensor is that of a body.
     pub fn with_inertia(self, inertia: Inertia) -> Result<Self, Error> {
-        let body = each_surface!(&self.skin, _balls => {
+        let body = each_surface!(&self.surface, _balls => {
             Self::of_balls(inertia, "points", self.balls()?.into_iter())
         }, convex => {
             let back = self.axes.inverse();
@@ -268,27 +268,30 @@ impl Rigid {
 
     /// The distance in m from the centre of mass to the plane that touches the body with this outward normal, in the axes that it was given in.
     pub fn support(&self, normal: Vector) -> f64 {
-        self.unit * self.skin.support(self.axes.inverse().rotate(normal) * -1.0)
+        self.unit
+            * self
+                .surface
+                .support(self.axes.inverse().rotate(normal) * -1.0)
     }
 
     /// The place of the part with this number, from 0, that is nearest to a plane with this normal, from the centre of mass in m; of several the
     /// one that comes down first as the normal changes with `turning`. All are in the axes that the body was given in.
     pub fn nearest(&self, number: usize, up: Vector, turning: Vector) -> Vector {
-        let part = each_surface!(&self.skin, balls => {
+        let part = each_surface!(&self.surface, balls => {
             let mut points = balls.points().iter();
             let place = points.position(|point| point.number as usize == number);
             place.expect("the number of a part")
         }, _convex => number);
         let back = self.axes.inverse();
         let nearest = self
-            .skin
+            .surface
             .nearest(part, back.rotate(up), back.rotate(turning));
         self.axes.rotate(nearest) * self.unit
     }
 
     /// The parts with which it touches another body, in m and the principal axes, where they are known.
     pub(super) fn pieces(&self) -> Option<Vec<Piece>> {
-        each_surface!(&self.skin, balls => {
+        each_surface!(&self.surface, balls => {
             let points = balls.points().iter();
             match self.extent {
                 Extent::Balls => {
@@ -310,7 +313,7 @@ impl Rigid {
     /// Smallest height of the centre of mass, in m, at which no part of the body is below the plane in an attitude of the axes that
     /// the body was given in.
     pub fn lowest(&self, attitude: Quaternion) -> f64 {
-        self.unit * self.skin.support(up(attitude * self.axes))
+        self.unit * self.surface.support(up(attitude * self.axes))
     }
 }
 

@@ -15,8 +15,6 @@ _STANDS_OUT = 1.3
 """If it also is so many times larger than any other in the flight before it."""
 _TOLERANCE = 0.09
 """Part of a flight by which an impact may be early or late."""
-_MOST_MISSED = 1
-"""Impacts that may be missed between two that are heard, beyond the first series of candidates."""
 _AS_LOUD = 0.85
 """A second sound whose rise is this part of the impact's is flagged as doubled."""
 _LATER = 0.25

@@ -19,7 +19,6 @@ from restitution.papers.runs import Runner, derived_seed
 
 Key = tuple[float, float]
 _FRICTION = ("spheres", "dumbbells")
-_RULES = 4
 
 
 @dataclass(frozen=True, eq=False)
