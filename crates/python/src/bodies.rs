@@ -59,17 +59,6 @@ impl Solid {
         Ok(heights.fold(0.0, f64::max))
     }
 
-    /// True if no part is below the plane at a height of the centre of mass, in m, for any cos θ in `cosines`, or at any angle if
-    /// these are not given.
-    #[pyo3(signature = (height, cosines=None))]
-    fn clears(&self, height: f64, cosines: Option<PyReadonlyArray1<'_, f64>>) -> PyResult<bool> {
-        let lowest = match cosines {
-            Some(cosines) => self.lowest(cosines)?,
-            None => self.farthest(),
-        };
-        Ok(restitution_core::Solid::clears(height, lowest))
-    }
-
     /// Smallest height of the centre of mass, in m, at which no part is below the plane at any angle.
     fn farthest(&self) -> f64 {
         self.0.farthest()
@@ -145,16 +134,6 @@ impl Rigid {
             .iter()
             .map(|&[w, x, y, z]| self.0.lowest(Quaternion::new(w, x, y, z).normalized()));
         Ok(heights.fold(0.0, f64::max))
-    }
-
-    /// True if no part is below the plane at a height of the centre of mass, in m, in any of these attitudes, or in none at all.
-    #[pyo3(signature = (height, attitudes=None))]
-    fn clears(&self, height: f64, attitudes: Option<PyReadonlyArray2<'_, f64>>) -> PyResult<bool> {
-        let lowest = match attitudes {
-            Some(attitudes) => self.lowest(attitudes)?,
-            None => self.farthest(),
-        };
-        Ok(restitution_core::Solid::clears(height, lowest))
     }
 
     /// Smallest height of the centre of mass, in m, at which no part is below the plane in any attitude.
@@ -329,10 +308,17 @@ fn faces(name: &str, given: Vec<Option<Given<'_>>>) -> PyResult<Polyhedron> {
     )
 }
 
+/// True if a height of the centre of mass is at least the lowest at which no part is below the plane, up to rounding.
+#[pyfunction]
+fn clears(height: f64, lowest: f64) -> bool {
+    restitution_core::Solid::clears(height, lowest)
+}
+
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Solid>()?;
     module.add_class::<Rigid>()?;
     module.add_function(wrap_pyfunction!(turned, module)?)?;
+    module.add_function(wrap_pyfunction!(clears, module)?)?;
     module.add_function(wrap_pyfunction!(rough, module)?)?;
     module.add_function(wrap_pyfunction!(faces, module)?)?;
     module.add_function(wrap_pyfunction!(hull, module)?)?;

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import ConfigDict, Field, InstanceOf, model_validator
 
+from restitution import _core
 from restitution._internal import text as _text
 from restitution._internal.arrays import FloatArray, check_each
 from restitution._internal.parameters import (
@@ -202,11 +203,11 @@ class Run(Parameters):
             raise ParameterError(Problem("orientation", text))
         solid: Any = self.body.compiled
         least = self.heights[0]
-        if solid.clears(least):
-            return self
         placed = given if self.angles is None else np.cos(self.angles)
-        if placed is None or not solid.clears(least, placed):
-            lowest = solid.farthest() if placed is None else solid.lowest(placed)
+        lowest = solid.farthest()
+        if placed is not None and not _core.clears(least, lowest):
+            lowest = solid.lowest(placed)
+        if not _core.clears(least, lowest):
             allowed = f"at least {lowest!r} m, or a part of the body would reach below the plane"
             allowed += "; are its lengths in m?" if lowest > 1.0 else ""
             raise ParameterError(wrong("release_height", self.release_height, allowed))
