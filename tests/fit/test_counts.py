@@ -1,4 +1,4 @@
-"""What may be fitted: counts against the samples behind them, a Dataset against the array in it."""
+"""Data that may be fitted: counts against the samples behind them, a Dataset against the array in it."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,4 +1,4 @@
-"""How far an impact follows from the one before, worked out again pair by pair."""
+"""The dependence of an impact on the one before, worked out again pair by pair."""
 
 from math import isnan, sqrt
 from statistics import fmean

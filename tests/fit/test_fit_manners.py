@@ -1,4 +1,4 @@
-"""What fits refuse, by name, and what they survive: few, equal, enormous, heavy-tailed, empty, infinite."""
+"""Data that fits refuse, by name, and survive: few, equal, enormous, heavy-tailed, empty, infinite."""
 
 import time
 import tracemalloc

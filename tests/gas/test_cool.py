@@ -18,7 +18,7 @@ ELASTIC = rs.Frictionless(normal=1.0)
 
 
 def pull(data: xr.Dataset, name: str, expected: float, at: int = -1) -> float:
-    """How many standard errors a value at a time is off."""
+    """Number of standard errors by which a value at a time is off."""
     return float((data[name][at] - expected) / data[f"{name}_error"][at])
 
 

@@ -61,7 +61,7 @@ WORKINGS = {
     "listen.Setting",
     "study.Study.where",
 }
-"""What other folders call, with what they have checked, and types of arguments."""
+"""Functions that other folders call, with what they have checked, and types of arguments."""
 
 
 def public() -> Iterator[tuple[str, Callable[..., Any]]]:
@@ -111,7 +111,7 @@ def arguments(name: str) -> list[str]:
 
 _PLACE = r"(?:\[[\d, ]*\]|\['\w+'\]|\.\w+)*"
 _AFTER = r"(?= = |: | has | holds | goes | lacks | gave |, \w+(?:: |, )| \* )"
-"""What follows the name of an argument, of several, or of an element of it."""
+"""Text that follows the name of an argument, of several, or of an element of it."""
 
 FITTING: dict[str, str] = {
     "Revolution.from_file.scale": "profile",

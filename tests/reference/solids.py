@@ -69,7 +69,7 @@ class Solid(ABC):
 
     @abstractmethod
     def depths(self, up: Array) -> Array:
-        """How far each part reaches below the centre of mass; `up` is the plane's normal in the body."""
+        """Reach of each part below the centre of mass; `up` is the plane's normal in the body."""
 
     @abstractmethod
     def lowest(self, up: Array, part: int) -> Array:

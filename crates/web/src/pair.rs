@@ -6,7 +6,7 @@ use restitution_core::pair::{Encounters, HIT, Meeting, PairState, PairTable, Par
 use restitution_core::{Error, Monitor, Quaternion, Run, Vector};
 use std::ops::Range;
 
-/// How they meet, as `web/src/engine/layout.ts` writes it: 0 for two Maxwellians, 1 for what is given; √(T_tr/m) and T_rot/T_tr; the relative
+/// The way in which they meet, as `web/src/engine/layout.ts` writes it: 0 for two Maxwellians, 1 for what is given; √(T_tr/m) and T_rot/T_tr; the relative
 /// speed, the impact parameter over the sum of the reaches, and ω of each about the normal of the plane in which the centres approach.
 pub const NUMBERS: usize = 7;
 

@@ -32,7 +32,7 @@ pub const NAMES: [&str; 7] = [
     "angle",
 ];
 
-/// How the particles of a run are released: all with the same velocity from the same height.
+/// The release of the particles of a run: all with the same velocity from the same height.
 #[derive(Debug, Clone)]
 pub enum Start {
     /// Polar angle, azimuth and spin of each.
@@ -274,7 +274,7 @@ impl Case {
         unreachable!()
     }
 
-    /// Whether every particle stays in the vertical plane of its axis.
+    /// True if every particle stays in the vertical plane of its axis.
     fn is_planar(&self) -> bool {
         let spins = match &self.start {
             Start::Each(list) => list.iter().any(|&(.., spin)| spin != [0.0; 3]),

@@ -34,7 +34,7 @@ pub struct Flight<'a> {
     pub body: &'a Body,
     pub start: State,
     pub gravity: Vector,
-    /// How much too high the plane is taken to be under each part, for the growth of rounding to be seen.
+    /// The height by which the plane is taken to be too high under each part, for the growth of rounding to be seen.
     pub bumps: [f64; 2],
 }
 

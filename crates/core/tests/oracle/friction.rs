@@ -41,7 +41,7 @@ enum End {
 }
 
 impl End {
-    /// How much more normal impulse it takes where dv_n/dp is `stiffness`.
+    /// The further normal impulse that it takes where dv_n/dp is `stiffness`.
     fn length(&self, p: f64, path: &Path, stiffness: f64) -> f64 {
         let speed = path[NORMAL_VELOCITY];
         match self {

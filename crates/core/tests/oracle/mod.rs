@@ -37,7 +37,7 @@ pub struct World {
     pub minimum_speed: f64,
 }
 
-/// How a particle is released.
+/// The release of a particle.
 #[derive(Debug, Clone, Copy)]
 pub struct Release {
     pub height: f64,
@@ -80,7 +80,7 @@ impl Noise {
 pub struct Impact {
     pub columns: [f64; 7],
     pub contact: i8,
-    /// Whether the gap is resolved: the flight may have opened it, and the speed of approach closes it, by more than rounding does.
+    /// True if the gap is resolved: the flight may have opened it, and the speed of approach closes it, by more than rounding does.
     pub resolved: bool,
 }
 
@@ -197,7 +197,7 @@ impl<'a> Particle<'a> {
         })
     }
 
-    /// Whether nothing comes after the last impact.
+    /// True if nothing comes after the last impact.
     pub fn ended(&self) -> Option<StopReason> {
         self.leaving?;
         let (moving, turning) = energies(&self.body, &self.state);

@@ -285,7 +285,7 @@ impl Body {
         matrix
     }
 
-    /// Whether all that can touch is spheres in one place, of which it does not matter which one does.
+    /// True if all that can touch is spheres in one place, of which it does not matter which one does.
     pub fn is_ball(&self) -> bool {
         match &self.hull {
             Hull::Balls(balls) => balls.iter().all(|ball| ball.place == balls[0].place),
