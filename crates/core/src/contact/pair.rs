@@ -23,18 +23,18 @@
 
 use super::certify::INVISIBLE;
 use super::plane::GapExpansion;
-use crate::math::{Symmetric, Vector, Vectors};
+use crate::math::Vector;
 use crate::motion::{BodyFrame, BodyPose, Turn};
-use crate::shape::{Feature, Piece, PieceKind, Top};
-use crate::simd::Pack;
-use pulp::Simd;
+use crate::shape::{Feature, Piece, PieceKind, Round, Top};
 
 /// Most steps of a search.
 const MOST_STEPS: usize = 1 << 20;
 /// The gap, over the size of a pair, that counts as none.
-const NARROW: f64 = 1e-14;
+pub(super) const NARROW: f64 = 1e-14;
 /// Most rounds of Newton's method for a normal.
-const ROUNDS: usize = 30;
+pub(super) const ROUNDS: usize = 30;
+/// The same between parts that are nearly flat where they touch, as superellipsoids are.
+const FLAT_ROUNDS: usize = 300;
 const UP: Vector = Vector::new(0.0, 0.0, 1.0);
 
 /// Two bodies that move freely: the place and the velocity of the centre of the first relative to that of the second, and their rotations.
@@ -90,19 +90,6 @@ pub(crate) struct BallGap {
     bound: f64,
 }
 
-/// [`BallGap`] in each lane, of two balls.
-#[derive(Clone, Copy)]
-pub(crate) struct BallGaps<S: Simd> {
-    pub width: Pack<S, 1>,
-    pub rate: Pack<S, 1>,
-    /// w² over the distance of the centres, by which f bends at least.
-    pub bent: Pack<S, 1>,
-    /// M.
-    pub bound: Pack<S, 1>,
-    distance: Pack<S, 1>,
-    spread: Pack<S, 1>,
-}
-
 /// A plane between two parts, from the second to the first: **n** and **n**′, the part that it leaves between them, and where they touch it.
 struct Parting<'a> {
     normal: Vector,
@@ -130,43 +117,6 @@ impl BallGap {
         } else {
             root(self.bound).max(until)
         }
-    }
-}
-
-impl<S: Simd> BallGaps<S> {
-    /// The gaps of balls whose centres differ by **y**, which changes at a rate and has a bounded acceleration, and the sum of their radii.
-    #[inline(always)]
-    pub fn new(y: Vectors<S, 1>, change: Vectors<S, 1>, radii: f64, bound: Pack<S, 1>) -> Self {
-        let distance = y.dot(y).sqrt();
-        let part = 1.0 / distance;
-        let rate = y.dot(change) * part;
-        let spread = (change.dot(change) - rate * rate).max(0.0);
-        Self {
-            width: distance - radii,
-            rate,
-            bent: spread * part,
-            bound,
-            distance,
-            spread,
-        }
-    }
-
-    /// [`BallGap::step`], where `shortest` is a time in which no gap changes visibly if its rate is 0.
-    #[inline(always)]
-    pub fn step(&self, shortest: Pack<S, 1>) -> Pack<S, 1> {
-        let zero = self.width * 0.0;
-        let (width, speed) = (self.width.max(0.0), self.rate.max(-self.rate));
-        let closes = self.rate.lt(0.0);
-        let (square, twice) = (speed * speed, width + width);
-        let whole = speed + twice.mul_add(self.bound, square).sqrt();
-        let root = closes.select(twice, whole) / closes.select(whole, self.bound);
-        let until = (self.distance + self.distance) * speed / (square + self.spread);
-        let beyond = twice.mul_add(self.bound - self.bent, square);
-        let bent = twice / (speed + beyond.max(0.0).sqrt());
-        // Where the parabola has no root, nothing touches while it holds.
-        let within = bent.le(until) & zero.le(beyond);
-        let closing = within.select(bent, root.max(until));
-        closes.select(closing, root.max(shortest))
     }
 }
 
@@ -486,8 +436,24 @@ impl Parting<'_> {
             frames[i].rotate(pieces[i].support(u, Vector::default()).1)
         };
         let tied = |i: usize| self.features[i].map_or(0, |feature| feature.ties.len());
-        if pieces[1].kind == PieceKind::Plane || tied(0) == 0 && self.features[0].is_some() {
+        if pieces[1].kind == PieceKind::Plane {
             return point(0, -1.0);
+        }
+        if tied(0) == 0 && self.features[0].is_some() {
+            // On a surface that is nearly flat the normal hardly tells the place.
+            let flatness = |i: usize, sign: f64| {
+                let u = frames[i].back(self.normal * sign);
+                let a = u.across();
+                let found = pieces[i].round.support(u);
+                let [p, _, q] = pieces[i].round.bends(u, [a, u.cross(a)], found);
+                p + q
+            };
+            let other = pieces.iter().any(|piece| is_flat(&piece.round)) && tied(1) == 0;
+            return if other && flatness(1, 1.0) < flatness(0, -1.0) {
+                point(1, 1.0) - apart
+            } else {
+                point(0, -1.0)
+            };
         }
         if tied(1) == 0 || tied(0) == 2 {
             return point(1, 1.0) - apart;
@@ -560,7 +526,7 @@ fn parting<'a>(
         frames[0].round(&pieces[0].round),
         frames[1].round(&pieces[1].round),
     ];
-    let sharp = rounds.iter().all(|round| *round == Symmetric::default());
+    let sharp = rounds.iter().all(Round::is_point);
     let mut best = Parting {
         normal: start,
         turning: Vector::default(),
@@ -631,7 +597,7 @@ fn direction(d: Vector, change: Vector, frame: &BodyFrame) -> (Vector, Vector) {
 #[inline(always)]
 fn freely(
     between: Vector,
-    rounds: &[Symmetric; 2],
+    rounds: &[Round; 2],
     tie: Option<Vector>,
     start: Vector,
     rough: Option<f64>,
@@ -641,7 +607,13 @@ fn freely(
         None => untied(between, tie)?,
     };
     let mut now = RoundGap::new(n, between, rounds);
-    for _ in 0..ROUNDS {
+    let flat = rounds.iter().any(is_flat);
+    let (rounds_at_most, least) = if flat {
+        (FLAT_ROUNDS, 1e-15)
+    } else {
+        (ROUNDS, 1e-7)
+    };
+    for _ in 0..rounds_at_most {
         let first = tie.map_or_else(|| n.across(), |tie| tie / tie.norm());
         let second = n.cross(first);
         // Slope along both, and curvature: radii of curvature, and the gap, as n stays a unit vector.
@@ -654,17 +626,17 @@ fn freely(
             let part = 1.0 / size;
             let (a, b) = (first.dot(pushed) * part, second.dot(pushed) * part);
             slope = [slope[0] - a, slope[1] - b];
-            let [along, across] = [*round * first, *round * second];
-            aa += (first.dot(along) - a * a) * part;
-            ab += (second.dot(along) - a * b) * part;
-            bb += (second.dot(across) - b * b) * part;
+            let bends = round.bends(n, [first, second], (pushed, size));
+            aa += bends[0];
+            ab += bends[1];
+            bb += bends[2];
         }
         let [p, q] = slope;
         let (x, y) = if tie.is_some() {
             (0.0, if bb > 0.0 { q / bb } else { q.signum() })
         } else {
             let determinant = aa * bb - ab * ab;
-            if aa > 0.0 && determinant > 0.0 {
+            if aa > 0.0 && determinant > 0.0 && determinant < f64::INFINITY {
                 let part = 1.0 / determinant;
                 ((bb * p - ab * q) * part, (aa * q - ab * p) * part)
             } else {
@@ -682,7 +654,7 @@ fn freely(
         loop {
             let next = untied(step.mul_add(part, n), tie)?;
             let there = RoundGap::new(next, between, rounds);
-            if there.width >= now.width || part * size < 1e-7 {
+            if there.width >= now.width || part * size < least {
                 (n, now) = (next, there);
                 break;
             }
@@ -690,14 +662,15 @@ fn freely(
         }
         // The error of n is about the square of the step, and that of the maximum of fourth order.
         let enough = |length: f64| length * square * square < 1e-3 * now.width;
-        if size < 1e-9 || rough.is_some_and(enough) {
+        let gained = !flat || p * x + q * y < 1e-16 * now.pushed[0].1.max(now.pushed[1].1);
+        if size < 1e-9 && gained || rough.is_some_and(enough) {
             break;
         }
     }
     Some((n, now.width))
 }
 
-/// What [`freely`] maximises, with B**n** and its root of both parts.
+/// What [`freely`] maximises, with [`Round::support`] of both parts.
 struct RoundGap {
     width: f64,
     pushed: [(Vector, f64); 2],
@@ -705,13 +678,18 @@ struct RoundGap {
 
 impl RoundGap {
     #[inline(always)]
-    fn new(n: Vector, between: Vector, rounds: &[Symmetric; 2]) -> Self {
-        let pushed = [pushed(&rounds[0], n), pushed(&rounds[1], n)];
+    fn new(n: Vector, between: Vector, rounds: &[Round; 2]) -> Self {
+        let pushed = [rounds[0].support(n), rounds[1].support(n)];
         Self {
             width: n.dot(between) - (pushed[0].1 + pushed[1].1),
             pushed,
         }
     }
+}
+
+/// True for what may be nearly flat where it touches, or nearly sharp.
+fn is_flat(round: &Round) -> bool {
+    matches!(round, Round::Superellipsoid(..))
 }
 
 /// The unit vector along the part of a vector that is perpendicular to a tie, if it is given.
@@ -730,13 +708,6 @@ fn untied(v: Vector, tie: Option<Vector>) -> Option<Vector> {
 fn height(piece: &Piece, (u, change): (Vector, Vector), s: f64, normal: f64) -> f64 {
     let along = change.mul_add(s, u);
     piece.support(along, Vector::default()).0 - piece.ball * (along.norm() - normal)
-}
-
-/// B**n** and √(**n**·B**n**).
-#[inline(always)]
-fn pushed(round: &Symmetric, n: Vector) -> (Vector, f64) {
-    let pushed = *round * n;
-    (pushed, n.dot(pushed).max(0.0).sqrt())
 }
 
 /// Bounds of the velocity of the points of a part without its ball, and of their acceleration along a normal **n** + s**n**′ with |**n**′| = `speed`.

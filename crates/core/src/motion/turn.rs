@@ -6,7 +6,7 @@
 
 use super::Rotation;
 use crate::math::{Quaternion, Symmetric, UNITS, Vector};
-use crate::shape::{Symmetry, Top};
+use crate::shape::{Round, Symmetry, Top};
 use crate::simd::elementary::sincos;
 
 /// The rotation of a body during a flight.
@@ -215,9 +215,19 @@ impl BodyFrame {
         Vector::new(x.dot(v), y.dot(v), z.dot(v))
     }
 
-    /// A matrix of the body in space; of a body of revolution it is symmetric about the axis.
+    /// What is round of a part, in space; of a body of revolution it is symmetric about the axis.
     #[inline(always)]
-    pub fn round(&self, body: &Symmetric) -> Symmetric {
+    pub fn round(&self, round: &Round) -> Round {
+        match round {
+            Round::Ellipsoid(body) => Round::Ellipsoid(self.matrix(body)),
+            Round::Superellipsoid(surface, axes) => {
+                Round::Superellipsoid(*surface, axes.map(|axis| self.rotate(axis)))
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn matrix(&self, body: &Symmetric) -> Symmetric {
         if let Some(axis) = self.axis {
             let entries = [body.xx, body.yy, body.zz];
             let [along, across] = [entries[axis], entries[(axis + 1) % 3]];

@@ -1,16 +1,16 @@
-//! Encounters of bodies that are balls on an axis, such as dumbbells, without friction: one in each lane of a vector.
+//! Encounters of bodies that are balls on an axis, such as dumbbells, or spheroids, without friction: one in each lane of a vector.
 //!
 //! The axis **e** of such a body turns about **Λ** at the rate Ω = |Λ|/J, and all that a contact without friction sees of the body is its axis: a unit
-//! impulse along **n** on the ball at x**e** changes **Λ**/J by (x/J) **e** × **n**, so that K_nn is the sum of 1/m + (x²/J)|**e** × **n**|² of both (10). The spin about
+//! impulse along **n** on the ball at x**e**, or on a spheroid where it is as far from the axis as such a ball, changes **Λ**/J by (x/J) **e** × **n**, so that K_nn is the sum of 1/m + (x²/J)|**e** × **n**|² of both (10). The spin about
 //! the axis is constant, and is added to the attitude at the end. What takes more (contacts that may last or accumulate, bodies that only rotation moves, a search that does not end soon)
 //! is rare, and left to [`Following`](super::encounter::Following).
 
 use super::encounter::{Chance, End, Ending, Hit, OnHit, Outcome, UNRESOLVED};
 use super::partner::{Approach, FreeBody, Partner};
-use crate::contact::{BallGaps, INVISIBLE};
+use crate::contact::{BallGaps, INVISIBLE, RoundPart, RoundParts, TurningAxis};
 use crate::law::{Frictionless, Law, Rule, scattered};
 use crate::math::{Quaternion, UNITS, Vector, Vectors};
-use crate::shape::PieceKind;
+use crate::shape::{Piece, PieceKind};
 use crate::simd::elementary::{sincos, sincos_in_lanes};
 use crate::simd::{Mask, Pack};
 use pulp::{Simd, WithSimd};
@@ -20,22 +20,33 @@ const MOST_LOOKS: f64 = 200.0;
 /// The most lanes of a vector.
 const MOST_LANES: usize = 8;
 
-/// Two bodies of balls on an axis, and a law without friction.
+/// Two bodies of balls on an axis, or of one ball or spheroid each, and a law without friction.
 pub(super) struct AxialPair<'a, 'b> {
     bodies: [&'a Partner; 2],
     law: &'a Law<'b>,
-    lines: [BallsOnAxis; 2],
-    /// Both are balls about their centres.
-    round: bool,
+    lines: [AxialBody; 2],
+    surfaces: Surfaces,
     reach: f64,
 }
 
-/// The balls of a body on its axis.
-struct BallsOnAxis {
+/// What touches.
+#[derive(Clone, Copy, PartialEq)]
+enum Surfaces {
+    /// Balls about the centres.
+    Spheres,
+    /// Balls.
+    Balls,
+    /// One ball or spheroid each.
+    Spheroids,
+}
+
+/// A body of balls on its axis, or of one part on it.
+struct AxialBody {
     /// The principal axis of this number.
     axis: usize,
     /// Their places along it and their radii.
     balls: Vec<[f64; 2]>,
+    part: Option<RoundPart>,
     /// The largest distance of one from the centre of mass.
     furthest: f64,
     /// The moment of inertia across it, and that about it, over this.
@@ -62,30 +73,59 @@ impl<'a, 'b> AxialPair<'a, 'b> {
             return None;
         }
         let [one, two] = bodies;
+        let lines = [AxialBody::new(one)?, AxialBody::new(two)?];
+        let surfaces = if one.is_ball() && two.is_ball() {
+            Surfaces::Spheres
+        } else if lines.iter().all(|line| !line.balls.is_empty()) {
+            Surfaces::Balls
+        } else if lines.iter().all(|line| line.part.is_some()) {
+            Surfaces::Spheroids
+        } else {
+            return None;
+        };
         Some(Self {
             bodies,
             law,
-            lines: [BallsOnAxis::new(one)?, BallsOnAxis::new(two)?],
-            round: one.is_ball() && two.is_ball(),
+            lines,
+            surfaces,
             reach: one.reach + two.reach,
+        })
+    }
+
+    /// The two parts of spheroids.
+    #[inline(always)]
+    fn parts(&self) -> Option<RoundParts<'_>> {
+        if self.surfaces != Surfaces::Spheroids {
+            return None;
+        }
+        let [one, two] = &self.lines;
+        Some(RoundParts {
+            parts: [one.part.as_ref()?, two.part.as_ref()?],
+            reach: self.reach,
         })
     }
 }
 
-impl BallsOnAxis {
+impl AxialBody {
     fn new(body: &Partner) -> Option<Self> {
         let axis = body.axis?;
-        let ball = |piece: &crate::shape::Piece| match piece.kind {
+        let ball = |piece: &Piece| match piece.kind {
             PieceKind::Ball(place, radius) => Some([place.parts()[axis], radius]),
             _ => None,
         };
         let moments = body.top.moments();
         let inertia = moments[(axis + 1) % 3];
-        let balls: Vec<[f64; 2]> = body.pieces.iter().map(ball).collect::<Option<_>>()?;
+        let balls: Option<Vec<[f64; 2]>> = body.pieces.iter().map(ball).collect();
+        let balls = balls.unwrap_or_default();
+        // A dumbbell may be two balls in one place.
+        let (first, others) = body.pieces.split_first()?;
+        let alone = others.iter().all(|piece| piece == first);
+        let part = alone.then(|| RoundPart::new(first, axis)).flatten();
         Some(Self {
             axis,
             furthest: balls.iter().map(|&[x, _]| x.abs()).fold(0.0, f64::max),
             balls,
+            part,
             inertia,
             ratio: moments[axis] / inertia,
         })
@@ -122,6 +162,8 @@ struct Line<S: Simd> {
     motion: [Vectors<S, 1>; 3],
     rate: Pack<S, 1>,
     bend: Pack<S, 1>,
+    /// Of a spheroid the largest distance of its points from **Λ**.
+    swing: Pack<S, 1>,
 }
 
 /// A unit quaternion in each lane.
@@ -166,12 +208,13 @@ impl<S: Simd> Line<S> {
             motion: [still; 3],
             rate: zero,
             bend: zero,
+            swing: zero,
         }
     }
 
     /// Puts a body into a lane.
     #[inline(always)]
-    fn put(&mut self, lane: usize, line: &BallsOnAxis, state: &FreeBody) {
+    fn put(&mut self, lane: usize, line: &AxialBody, state: &FreeBody) {
         let mut spin = state.spin.parts();
         spin[line.axis] *= line.ratio;
         let [x, y, z] = spin;
@@ -184,7 +227,7 @@ impl<S: Simd> Line<S> {
 
     /// Begins a flight in some lanes.
     #[inline(always)]
-    fn begin(&mut self, fresh: Mask<S, 1>) {
+    fn begin(&mut self, line: &AxialBody, fresh: Mask<S, 1>) {
         let square = self.precession.dot(self.precession);
         let rate = square.sqrt();
         let turns = Pack::splat(rate.simd(), 0.0).lt(rate);
@@ -193,7 +236,8 @@ impl<S: Simd> Line<S> {
             .or(turns, self.precession.times(1.0 / turns.select(rate, 1.0)));
         let third = about.cross(self.axis);
         let second = third.cross(about);
-        let along = about.times(about.dot(self.axis));
+        let cosine = about.dot(self.axis);
+        let along = about.times(cosine);
         let [one, two, three] = self.motion;
         self.motion = [
             one.or(fresh, along),
@@ -201,7 +245,11 @@ impl<S: Simd> Line<S> {
             three.or(fresh, third),
         ];
         self.rate = fresh.select(rate, self.rate);
-        self.bend = fresh.select(square * third.dot(third).sqrt(), self.bend);
+        let sine = third.dot(third).sqrt();
+        self.bend = fresh.select(square * sine, self.bend);
+        if let Some(part) = &line.part {
+            self.swing = fresh.select(part.swing(sine, cosine), self.swing);
+        }
     }
 
     /// **e** and **e**′ at a time, of which sine and cosine of the angle are given.
@@ -211,6 +259,19 @@ impl<S: Simd> Line<S> {
         let axis = third.mul_add(sine, second.mul_add(cosine, along));
         let change = third.times(cosine).minus(second.times(sine));
         [axis, change.times(self.rate)]
+    }
+
+    /// The same with what turns it.
+    #[inline(always)]
+    fn turning(&self, time: Pack<S, 1>) -> TurningAxis<S> {
+        let [axis, change] = self.at(sincos_in_lanes(self.rate * time));
+        TurningAxis {
+            axis,
+            change,
+            turn: self.precession,
+            rate: self.rate,
+            swing: self.swing,
+        }
     }
 
     /// Turns the bodies of some lanes for a time.
@@ -242,6 +303,8 @@ struct Encountering<S: Simd> {
     /// The two balls that leave each other, counted from 1, or 0, and their speed.
     left: Pack<S, 1>,
     left_speed: Pack<S, 1>,
+    /// The last normal between spheroids, or none.
+    normal: Vectors<S, 1>,
     /// A time in which no gap changes visibly if its rate is 0.
     shortest: Pack<S, 1>,
     looks: Pack<S, 1>,
@@ -277,6 +340,7 @@ impl<S: Simd> Encountering<S> {
             until: zero,
             left: zero,
             left_speed: zero,
+            normal: still,
             shortest: zero,
             looks: zero,
             clock: zero,
@@ -303,6 +367,7 @@ impl<S: Simd> Encountering<S> {
         ] {
             pack.as_mut_slice()[lane] = 0.0;
         }
+        self.normal.put(lane, Vector::default());
         self.impulse.put(lane, Vector::default());
         self.moment.put(lane, Vector::default());
     }
@@ -329,10 +394,10 @@ impl<S: Simd> Encountering<S> {
         self.looks = fresh.select(0.0, self.looks);
         let mut most = zero;
         for i in 0..2 {
-            self.lines[i].begin(fresh);
+            self.lines[i].begin(&pair.lines[i], fresh);
             most = self.lines[i].bend.mul_add(pair.lines[i].furthest, most);
         }
-        if pair.round {
+        if pair.surfaces == Surfaces::Spheres {
             // They touch where they come into reach of each other, and that once.
             let met = zero.lt(self.contacts) | !comes;
             self.time = fresh.select(met.select(f64::INFINITY, self.time), self.time);
@@ -341,6 +406,37 @@ impl<S: Simd> Encountering<S> {
         let turns = zero.lt(most);
         let shortest = (INVISIBLE * reach / turns.select(most, 1.0)).sqrt();
         self.shortest = fresh.select(turns.select(shortest, 0.0), self.shortest);
+    }
+
+    /// Looks at spheroids in some lanes.
+    #[inline(always)]
+    fn look_round(&mut self, parts: &RoundParts<'_>, active: Mask<S, 1>) -> NearestBalls<S> {
+        let bodies = [
+            self.lines[0].turning(self.time),
+            self.lines[1].turning(self.time),
+        ];
+        let axes = [bodies[0].axis, bodies[1].axis];
+        let apart = self.velocity.mul_add(self.time, self.apart);
+        let between = parts.between(apart, axes);
+        self.normal = parts.normal(self.normal(between), between, axes, active, true);
+        let zero = Pack::splat(self.time.simd(), 0.0);
+        let leaves = self.time.eq(0.0) & zero.lt(self.left);
+        let motion = [apart, self.velocity];
+        let found = parts.step(self.normal, motion, &bodies, (leaves, self.left_speed));
+        NearestBalls {
+            clear: found.clear,
+            balls: zero + 1.0,
+            rate: found.rate,
+            bound: found.bound,
+        }
+    }
+
+    /// The last normal, or that between the centres.
+    #[inline(always)]
+    fn normal(&self, between: Vectors<S, 1>) -> Vectors<S, 1> {
+        let none = self.normal.dot(self.normal).eq(0.0);
+        let along = between.times(1.0 / between.dot(between).sqrt());
+        self.normal.or(none, along)
     }
 
     /// Looks at all balls.
@@ -416,19 +512,11 @@ impl AxialEncounters<'_, '_, '_> {
     ) -> Mask<S, 1> {
         let pair = self.pair;
         let zero = Pack::splat(balls.simd(), 0.0);
-        let (mut places, mut number) = ([zero; 2], 0.0);
-        for &[x, _] in &pair.lines[0].balls {
-            for &[place, _] in &pair.lines[1].balls {
-                number += 1.0;
-                let these = balls.eq(number);
-                places = [these.select(x, places[0]), these.select(place, places[1])];
-            }
-        }
+        let (normal, places, radius) = match pair.parts() {
+            Some(parts) => all.meet_round(&parts, touched),
+            None => all.meet(pair, balls),
+        };
         let [one, two] = &all.lines;
-        let y = two
-            .axis
-            .mul_add(-places[1], one.axis.mul_add(places[0], all.apart));
-        let normal = y.times(1.0 / y.dot(y).sqrt());
         let arms = [
             one.axis.cross(normal).times(places[0]),
             two.axis.cross(normal).times(places[1]),
@@ -458,9 +546,7 @@ impl AxialEncounters<'_, '_, '_> {
             while let Some(lane) = take(&mut lanes) {
                 let at = |pack: &Pack<S, 1>| pack.as_slice()[lane];
                 let (job, normal) = (jobs[lane], normal.lane(lane));
-                let radius =
-                    pair.lines[0].balls[(at(&balls) as usize - 1) / pair.lines[1].balls.len()][1];
-                let first = one.axis.lane(lane) * at(&places[0]) - normal * radius;
+                let first = one.axis.lane(lane) * at(&places[0]) - normal * at(&radius);
                 let centre = all.place(lane, 0, pair, &self.approaches[job]);
                 hit(
                     job,
@@ -492,7 +578,40 @@ impl AxialEncounters<'_, '_, '_> {
     }
 }
 
+/// The normal of a contact, the places on the axes where the balls are that touch, and the radius of the first.
+type AxialContact<S> = (Vectors<S, 1>, [Pack<S, 1>; 2], Pack<S, 1>);
+
 impl<S: Simd> Encountering<S> {
+    /// Where balls of these numbers touch.
+    #[inline(always)]
+    fn meet(&self, pair: &AxialPair<'_, '_>, balls: Pack<S, 1>) -> AxialContact<S> {
+        let zero = Pack::splat(balls.simd(), 0.0);
+        let (mut places, mut radius, mut number) = ([zero; 2], zero, 0.0);
+        for &[x, size] in &pair.lines[0].balls {
+            for &[place, _] in &pair.lines[1].balls {
+                number += 1.0;
+                let these = balls.eq(number);
+                places = [these.select(x, places[0]), these.select(place, places[1])];
+                radius = these.select(size, radius);
+            }
+        }
+        let [one, two] = &self.lines;
+        let y = two
+            .axis
+            .mul_add(-places[1], one.axis.mul_add(places[0], self.apart));
+        (y.times(1.0 / y.dot(y).sqrt()), places, radius)
+    }
+
+    /// Where spheroids touch, in some lanes.
+    #[inline(always)]
+    fn meet_round(&mut self, parts: &RoundParts<'_>, touched: Mask<S, 1>) -> AxialContact<S> {
+        let axes = [self.lines[0].axis, self.lines[1].axis];
+        let between = parts.between(self.apart, axes);
+        self.normal = parts.normal(self.normal, between, axes, touched, false);
+        let found = parts.contact(self.normal, between, axes);
+        (self.normal, found.places, found.radius)
+    }
+
     /// The centre of a body of a lane now.
     #[inline(always)]
     fn place(&self, lane: usize, i: usize, pair: &AxialPair<'_, '_>, from: &Approach) -> Vector {
@@ -587,7 +706,7 @@ impl WithSimd for AxialEncounters<'_, '_, '_> {
             }
             let look;
             let (closes, best);
-            if pair.round {
+            if pair.surfaces == Surfaces::Spheres {
                 let one = Pack::splat(simd, 1.0);
                 look = NearestBalls {
                     clear: all.time,
@@ -598,7 +717,10 @@ impl WithSimd for AxialEncounters<'_, '_, '_> {
                 best = all.time;
                 closes = Mask::splat(simd, true);
             } else {
-                look = all.look(pair);
+                look = match pair.parts() {
+                    Some(parts) => all.look_round(&parts, active),
+                    None => all.look(pair),
+                };
                 best = all.time + look.clear;
                 let square = look.clear * look.clear;
                 closes = look.rate.lt(0.0) & (look.bound * square).le(INVISIBLE * reach);
@@ -652,7 +774,7 @@ impl<S: Simd> Encountering<S> {
             while let Some(lane) = take(&mut lanes) {
                 passed.as_mut_slice()[lane] = run.approaches[jobs[lane]].passed[i];
             }
-            line.begin(fresh);
+            line.begin(&run.pair.lines[i], fresh);
             line.turn(fresh, passed);
         }
     }

@@ -203,6 +203,8 @@ pub const HIT: &[PairVariable] = &[
     ),
 ];
 
+/// The numbers of an encounter.
+const ALL_NUMBERS: usize = 70;
 /// The variables of [`ENCOUNTER`] that come before those that only states need.
 const WITHOUT_STATES: usize = 18;
 
@@ -231,11 +233,12 @@ impl PairTable {
 }
 
 /// An encounter that was followed.
-struct Encountered {
+struct Encountered<'a> {
     /// The bodies before.
-    before: [PairState; 2],
-    /// The end.
-    outcome: Outcome,
+    before: &'a [PairState; 2],
+    /// The end, and the bodies then.
+    outcome: &'a Outcome<FreeBody>,
+    after: [PairState; 2],
     /// The first contact, if there was one.
     first: Option<Hit>,
 }
@@ -320,32 +323,20 @@ impl Encounters<'_> {
 
     /// A row of [`ENCOUNTER`].
     #[inline(always)]
-    fn write(&self, found: &Encountered, row: &mut Vec<f64>) {
+    fn write(&self, found: &Encountered<'_>, row: &mut [f64; ALL_NUMBERS]) {
         let Encountered {
             before,
             outcome,
+            after,
             first,
         } = found;
-        let after = &outcome.states;
         let [one, two] = self.bodies;
         let relative = |states: &[PairState; 2]| states[0].velocity - states[1].velocity;
         let (u, later) = (relative(before), relative(after));
         let sizes = u.norm() * later.norm();
         let (sine, cosine) = (u.cross(later).norm() / sizes, u.dot(later) / sizes);
-        let of = |states: &[PairState; 2]| {
-            let [first, second] = states;
-            let translation = [
-                one.translational_energy(first.velocity),
-                two.translational_energy(second.velocity),
-            ];
-            let rotation = [
-                one.rotational_energy(first.attitude, first.spin),
-                two.rotational_energy(second.attitude, second.spin),
-            ];
-            [translation, rotation]
-        };
-        let [translation, rotation] = of(before);
-        let [translation_after, rotation_after] = of(after);
+        let [translation, rotation] = self.energies(before);
+        let [translation_after, rotation_after] = self.energies(after);
         let reduced = 1.0 / (one.inverse_mass + two.inverse_mass);
         let energy = |u: Vector, [a, b]: [f64; 2]| 0.5 * reduced * u.dot(u) + a + b;
         let (speed, centre, coefficients) = match first {
@@ -368,7 +359,7 @@ impl Encounters<'_> {
         } else {
             f64::NAN
         };
-        row.extend_from_slice(&[
+        row[..7].copy_from_slice(&[
             outcome.contacts as f64,
             f64::from(outcome.ending as u8),
             outcome.time,
@@ -377,22 +368,32 @@ impl Encounters<'_> {
             speed,
             centre,
         ]);
-        row.extend_from_slice(&coefficients);
+        row[7..10].copy_from_slice(&coefficients);
         let energies = [translation, translation_after, rotation, rotation_after];
-        row.extend_from_slice(energies.as_flattened());
+        row[10..18].copy_from_slice(energies.as_flattened());
         let [a, b] = before;
         let [c, d] = after;
-        let vectors = [
-            [a.velocity, b.velocity, c.velocity, d.velocity],
-            [a.spin, b.spin, c.spin, d.spin],
-            [a.position, b.position, c.position, d.position],
+        for (i, state) in [a, b, c, d].into_iter().enumerate() {
+            row[18 + 3 * i..][..3].copy_from_slice(&state.velocity.parts());
+            row[30 + 3 * i..][..3].copy_from_slice(&state.spin.parts());
+            row[42 + 3 * i..][..3].copy_from_slice(&state.position.parts());
+            row[54 + 4 * i..][..4].copy_from_slice(&state.attitude.parts());
+        }
+    }
+
+    /// The energies of translation and of rotation of both bodies.
+    #[inline(always)]
+    fn energies(&self, [one, two]: &[PairState; 2]) -> [[f64; 2]; 2] {
+        let [first, second] = self.bodies;
+        let translation = [
+            first.translational_energy(one.velocity),
+            second.translational_energy(two.velocity),
         ];
-        for [a, b, c, d] in vectors {
-            row.extend_from_slice([a.parts(), b.parts(), c.parts(), d.parts()].as_flattened());
-        }
-        for state in [a, b, c, d] {
-            row.extend_from_slice(&state.attitude.parts());
-        }
+        let rotation = [
+            first.rotational_energy(one.attitude, one.spin),
+            second.rotational_energy(two.attitude, two.spin),
+        ];
+        [translation, rotation]
     }
 }
 
@@ -456,27 +457,36 @@ impl WithSimd for EncounterBlock<'_, '_, '_, '_> {
         };
         let chance = |row, contact| of_impact(seed, first + row as u64, contact);
         let ends = follower.follow(&approaches, &chance, Some(&mut add));
-        let (mut rows, mut numbers) = (Vec::new(), Vec::new());
-        for (row, (end, before)) in ends.zip(before).enumerate() {
+        let (mut rows, mut numbers) = (Vec::new(), [0.0; ALL_NUMBERS]);
+        for (row, (end, before)) in ends.zip(&before).enumerate() {
             let hits = &mut hits[row];
-            let outcome = end
-                .clone()
-                .map_err(|trouble| failed(law, trouble, (seed, first + row as u64), hits.len()))?;
-            let outcome = outcome.given(bodies);
+            let outcome = match end {
+                Ok(outcome) => outcome,
+                Err(trouble) => {
+                    let trouble = trouble.clone();
+                    return Err(failed(law, trouble, (seed, first + row as u64), hits.len()));
+                }
+            };
+            let [one, two] = &outcome.states;
             hits.truncate(outcome.contacts as usize);
-            numbers.clear();
             let found = Encountered {
                 before,
                 outcome,
+                after: [one.state(bodies[0]), two.state(bodies[1])],
                 first: hits.first().copied(),
             };
             encounters.write(&found, &mut numbers);
             let mut rest = &numbers[..];
             for (column, variable) in columns.iter_mut().zip(ENCOUNTER) {
                 let width = width(variable);
-                let (own, others) = rest.split_at(width);
-                column[row * width..][..width].copy_from_slice(own);
-                rest = others;
+                // A copy of a number of bytes that is not known is a call.
+                match width {
+                    1 => column[row] = rest[0],
+                    2 => column[2 * row..][..2].copy_from_slice(&rest[..2]),
+                    6 => column[6 * row..][..6].copy_from_slice(&rest[..6]),
+                    _ => column[width * row..][..width].copy_from_slice(&rest[..width]),
+                }
+                rest = &rest[width..];
             }
             for hit in hits.iter().filter(|_| contacts) {
                 let ([n, p, i], [before, after]) = (

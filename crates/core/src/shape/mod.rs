@@ -30,7 +30,7 @@ use crate::math::Vector;
 pub use clump::Matter;
 pub use hull::triangles as convex_hull;
 
-pub(crate) use pieces::{Feature, Piece, PieceKind};
+pub(crate) use pieces::{Feature, Piece, PieceKind, Round};
 pub use revolution::*;
 pub(crate) use rigid::up;
 pub use rigid::{Inertia, Rigid, RigidBall};
@@ -196,7 +196,7 @@ impl AnyBody<'_> {
         found.ok_or_else(|| Error::Parameter {
             name,
             value: crate::Value::Name("this body".into()),
-            allowed: "made of balls, an ellipsoid, a convex polyhedron, a cylinder or a spherocylinder: \
+            allowed: "made of balls, an ellipsoid or superellipsoid, a convex polyhedron, a cylinder or a spherocylinder: \
                       the surface of another is not known where it is not on its convex hull, or not yet followed"
                 .into(),
         })

@@ -1,9 +1,10 @@
 //! The parts with which a body touches another body: on a plane only its convex hull can.
 //!
-//! Each is convex, and the Minkowski sum of a polyhedron (a point, a segment, or one with faces) and of an ellipsoid whose support function is
+//! Each is convex, and the Minkowski sum of a polyhedron (a point, a segment, or one with faces) and of a superellipsoid, or an ellipsoid whose support function is
 //! √(**u**·B**u**): a ball has B = ρ²I, a disc, which makes a cylinder of a segment, B = ρ²(I − **aa**), and a polyhedron by itself B = 0.
 
 use super::hull::triangles;
+use super::surface::Superellipsoid;
 use crate::math::{Quaternion, Symmetric, UNITS, Vector};
 
 /// A part of a body, in m and the principal axes, from the centre of mass.
@@ -13,8 +14,7 @@ pub(crate) struct Piece {
     /// The corners of the polyhedron; of a ball its centre.
     pub corners: Vec<Vector>,
     pub features: Vec<Feature>,
-    /// B.
-    pub round: Symmetric,
+    pub round: Round,
     /// The radius of a ball whose sum with something convex it is, as large as this can be.
     pub ball: f64,
     /// The largest distance of a point of that from the centre of mass.
@@ -22,6 +22,15 @@ pub(crate) struct Piece {
     /// Of what is symmetric about a principal axis: the largest height of a corner on it, and the semi-axes of an ellipsoid along and across with which
     /// the rest without the ball fits.
     pub extents: [f64; 3],
+}
+
+/// What is round of a part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Round {
+    /// B.
+    Ellipsoid(Symmetric),
+    /// With its axes.
+    Superellipsoid(Superellipsoid, [Vector; 3]),
 }
 
 /// The kind of a part.
@@ -71,6 +80,52 @@ pub(crate) enum Extent {
     Other,
 }
 
+impl Round {
+    /// True for nothing, the rest of a polyhedron.
+    #[inline(always)]
+    pub fn is_point(&self) -> bool {
+        *self == Self::Ellipsoid(Symmetric::default())
+    }
+
+    /// h(**u**), the support, and h times its gradient, the place that touches.
+    #[inline(always)]
+    pub fn support(&self, u: Vector) -> (Vector, f64) {
+        match self {
+            Self::Ellipsoid(round) => {
+                let pushed = *round * u;
+                (pushed, u.dot(pushed).max(0.0).sqrt())
+            }
+            Self::Superellipsoid(surface, [x, y, z]) => {
+                let own = Vector::new(x.dot(u), y.dot(u), z.dot(u));
+                let (size, place) = surface.farthest(own);
+                let place = z.mul_add(place.z, y.mul_add(place.y, *x * place.x));
+                (place * size, size)
+            }
+        }
+    }
+
+    /// The second derivatives **a**·h″**a**, **a**·h″**b** and **b**·h″**b** at **u**, given h times the gradient, and h > 0.
+    #[inline(always)]
+    pub fn bends(&self, u: Vector, [a, b]: [Vector; 2], (pushed, size): (Vector, f64)) -> [f64; 3] {
+        match self {
+            Self::Ellipsoid(round) => {
+                let part = 1.0 / size;
+                let [p, q] = [a.dot(pushed) * part, b.dot(pushed) * part];
+                let [along, across] = [*round * a, *round * b];
+                [
+                    (a.dot(along) - p * p) * part,
+                    (b.dot(along) - p * q) * part,
+                    (b.dot(across) - q * q) * part,
+                ]
+            }
+            Self::Superellipsoid(surface, [x, y, z]) => {
+                let own = |v: Vector| Vector::new(x.dot(v), y.dot(v), z.dot(v));
+                surface.bends(own(u), [own(a), own(b)])
+            }
+        }
+    }
+}
+
 impl Piece {
     /// The plane.
     pub(crate) fn plane() -> Self {
@@ -112,7 +167,7 @@ impl Piece {
             kind: PieceKind::Convex,
             corners,
             features,
-            round,
+            round: Round::Ellipsoid(round),
             ball,
             reach: far + (most - ball),
             extents: [0.0; 3],
@@ -123,6 +178,22 @@ impl Piece {
     pub(super) fn ellipsoid(semi_axes: [f64; 3], axes: Quaternion, centre: Vector) -> Self {
         let round = Symmetric::turned(semi_axes.map(|axis| axis * axis), axes);
         Self::convex(vec![centre], vec![Feature::new(centre, &[])], round)
+    }
+
+    /// A superellipsoid with these axes and this centre, and the largest distance of a point from the centre of mass.
+    pub(super) fn superellipsoid(
+        surface: Superellipsoid,
+        axes: Quaternion,
+        centre: Vector,
+        reach: f64,
+    ) -> Self {
+        let round = Round::Superellipsoid(surface, UNITS.map(|unit| axes.rotate(unit)));
+        let corner = Feature::new(centre, &[]);
+        Self {
+            round,
+            reach,
+            ..Self::convex(vec![centre], vec![corner], Symmetric::default())
+        }
     }
 
     /// A segment rounded by a ball, or by a disc across it, whose flat sides are faces.
@@ -177,13 +248,16 @@ impl Piece {
 
     /// True of a body of revolution about the principal axis of this number.
     pub(crate) fn is_round_about(&self, axis: usize) -> bool {
+        let Round::Ellipsoid(round) = self.round else {
+            return false;
+        };
         let [_, f, g] = around(axis);
         let on = |v: &Vector| v.dot(f) == 0.0 && v.dot(g) == 0.0;
         let sides = self.features.iter().all(|feature| match feature.normal {
             Some(normal) => on(&normal),
             None => feature.ties.iter().all(on),
         });
-        let [one, two] = [f, g].map(|u| self.round * u);
+        let [one, two] = [f, g].map(|u| round * u);
         self.corners.iter().all(on) && sides && one == f * one.dot(f) && two == g * one.dot(f)
     }
 
@@ -191,7 +265,7 @@ impl Piece {
     pub(crate) fn about(mut self, axis: usize) -> Self {
         let [e, f, _] = around(axis);
         let height = self.corners.iter().map(|corner| corner.dot(e).abs());
-        let [along, across] = [e, f].map(|u| (u.dot(self.round * u).sqrt() - self.ball).max(0.0));
+        let [along, across] = [e, f].map(|u| (self.round.support(u).1 - self.ball).max(0.0));
         self.extents = [height.fold(0.0, f64::max), along, across];
         self
     }
@@ -219,10 +293,8 @@ impl Piece {
                 best = (height.max(best.0), corner);
             }
         }
-        let pushed = self.round * u;
-        let square = u.dot(pushed);
-        if square > 0.0 {
-            let size = square.sqrt();
+        let (pushed, size) = self.round.support(u);
+        if size > 0.0 {
             (best.0 + size, best.1 + pushed / size)
         } else {
             best

@@ -5,9 +5,9 @@
 //! The surface is the unit sphere of a nested norm, so that its support function is the dual one (Hölder), with 1/p + 1/n = 1:
 //! h(**u**) = (W^p₁ + |cu_z|^p₁)^(1/p₁), W = (|au_x|^p₂ + |bu_y|^p₂)^(1/p₂). Its gradient is the place that touches.
 
-use super::ConvexSurface;
 use super::support::{NormalMotion, Support};
-use crate::math::Vector;
+use super::{ConvexSurface, Piece};
+use crate::math::{Quaternion, Vector};
 use crate::simd::elementary::{exp_m1_in_lanes, ln};
 use crate::simd::one;
 
@@ -77,7 +77,7 @@ impl Superellipsoid {
 
     /// h(**u**), and the place on the surface with that outward normal.
     #[inline(always)]
-    fn farthest(&self, u: Vector) -> (f64, Vector) {
+    pub fn farthest(&self, u: Vector) -> (f64, Vector) {
         let ([a, b, c], [p, q]) = (self.semi_axes, self.dual);
         let (level, [x, y]) = Self::norm(q, (a * u.x).abs(), (b * u.y).abs());
         let (size, [across, along]) = Self::norm(p, level, (c * u.z).abs());
@@ -92,28 +92,39 @@ impl Superellipsoid {
 
     /// h″ along a curve of directions **u** with **u**′ and **u**″; infinite where the surface is flat.
     fn bent(&self, u: Vector, turning: Vector, bending: Vector) -> f64 {
+        self.bends(u, [turning; 2])[0] + self.farthest(u).1.dot(bending)
+    }
+
+    /// The second derivatives of h(**u**) along two directions, and the mixed one in between.
+    pub fn bends(&self, u: Vector, [v, w]: [Vector; 2]) -> [f64; 3] {
         let ([a, b, c], [p, q]) = (self.semi_axes, self.dual);
-        let own = |axis: f64, u: f64, v: f64| ((axis * u).abs(), (axis * v).copysign(u * v));
+        let side = |axis: f64, u: f64, v: f64| (axis * v).copysign(u * v);
+        let own = |axis: f64, u: f64, [v, w]: [f64; 2]| {
+            ((axis * u).abs(), [side(axis, u, v), side(axis, u, w)])
+        };
         // Of two numbers ≥ 0 with their derivatives: their norm N with its first one, and (p − 1)(xy)^(p−2) (x dy − y dx)² N^(1−2p), by which
         // the second one is larger than that of the numbers.
-        let second = |p: f64, [(x, dx), (y, dy)]: [(f64, f64); 2]| {
+        let second = |p: f64, [(x, dx), (y, dy)]: [(f64, [f64; 2]); 2]| {
             let (size, [fx, fy]) = Self::norm(p, x, y);
-            let cross = x * dy - y * dx;
-            let curved = if cross == 0.0 {
-                0.0
-            } else {
-                let part = |of: f64| match p - 2.0 {
-                    0.0 => 1.0,
-                    more if more > 0.0 => power(of / size, more),
-                    less => 1.0 / power(of / size, -less),
-                };
-                (p - 1.0) * part(x) * part(y) * cross * cross / (size * size * size)
+            let cross = [x * dy[0] - y * dx[0], x * dy[1] - y * dx[1]];
+            let part = |of: f64| match p - 2.0 {
+                0.0 => 1.0,
+                more if more > 0.0 => power(of / size, more),
+                less => 1.0 / power(of / size, -less),
             };
-            (size, fx * dx + fy * dy, curved, fx)
+            let curved = |i: usize, j: usize| {
+                if cross[i] == 0.0 || cross[j] == 0.0 {
+                    return 0.0;
+                }
+                (p - 1.0) * part(x) * part(y) * cross[i] * cross[j] / (size * size * size)
+            };
+            let slopes = [fx * dx[0] + fy * dy[0], fx * dx[1] + fy * dy[1]];
+            (size, slopes, [curved(0, 0), curved(0, 1), curved(1, 1)], fx)
         };
-        let (level, slope, curved, _) = second(q, [own(a, u.x, turning.x), own(b, u.y, turning.y)]);
-        let (_, _, outer, across) = second(p, [(level, slope), own(c, u.z, turning.z)]);
-        outer + across * curved + self.farthest(u).1.dot(bending)
+        let (level, slopes, curved, _) =
+            second(q, [own(a, u.x, [v.x, w.x]), own(b, u.y, [v.y, w.y])]);
+        let (_, _, outer, across) = second(p, [(level, slopes), own(c, u.z, [v.z, w.z])]);
+        [0, 1, 2].map(|i| outer[i] + across * curved[i])
     }
 }
 
@@ -158,6 +169,11 @@ impl ConvexSurface for Superellipsoid {
             semi_axes: self.semi_axes.map(|axis| axis / part),
             ..*self
         }
+    }
+
+    fn piece(&self, axes: Quaternion, centre: Vector, unit: f64) -> Option<Piece> {
+        let surface = self.scaled(1.0 / unit, 0.0);
+        Some(Piece::superellipsoid(surface, axes, centre * unit, unit))
     }
 }
 
