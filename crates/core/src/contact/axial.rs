@@ -1,8 +1,8 @@
 //! The gaps of two bodies of revolution, one pair in each lane of a vector: balls on their axes, or one spheroid each, as [`super::pair`] has them for numbers.
 //!
 //! The axis **e** of each turns about **Λ**. A spheroid about x**e** has B = β²I + γ**ee**, so that of a normal only c = **n**·**e** is seen: with
-//! h = √(β² + γc²), its support is xc + h, and the point that touches is as far from the axis as a ball, about the place p = x ± γc/h on it, would have it. With **P**
-//! **Λ**/J = **P**, and **n** constant, what parts the bodies is at least
+//! h = √(β² + γc²), its support is xc + h, and where it touches, it is as a ball about (x ± γc/h)**e** would be. With **P** = **Λ**/J and **n** constant, what parts
+//! the bodies is at least
 //!
 //! F(s) = f + s **n**·**Y**′ − Σ [√(β²(1 + q²s²) + γ(c + c′s)²) − h − ϱ(√(1 + q²s²) − 1)] − Ks², q = |**n** × **P**|, c′ = **n**·**e**′,
 //!
@@ -233,9 +233,9 @@ impl RoundParts<'_> {
             // Slope along both, and curvature: radii of curvature, and the gap, as n stays a unit vector.
             let mut slope = [u.dot(between), v.dot(between)];
             let [mut aa, mut ab, mut bb] = [now.width, zero, now.width];
-            for i in 0..2 {
+            for (i, axis) in axes.into_iter().enumerate() {
                 let (part, inverse, shift) = (self.parts[i], now.inverse[i], now.shifts[i]);
-                let [a, b] = [u.dot(axes[i]), v.dot(axes[i])];
+                let [a, b] = [u.dot(axis), v.dot(axis)];
                 slope = [slope[0] - shift * a, slope[1] - shift * b];
                 let radius = inverse * part.square;
                 let bend = inverse * inverse * part.excess;

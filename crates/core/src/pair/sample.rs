@@ -255,9 +255,8 @@ impl WithSimd for DrawColumn<'_> {
         let (one, two) = (&one[..rows], &two[..rows]);
         match self.kind {
             Drawn::Uniform => {
-                for row in 0..rows {
-                    let (a, b) = one[row];
-                    self.numbers[row] = [a, b, 0.0, 0.0];
+                for (numbers, &(a, b)) in self.numbers.iter_mut().zip(one) {
+                    *numbers = [a, b, 0.0, 0.0];
                 }
             }
             Drawn::Normals => {
