@@ -275,10 +275,13 @@ def test_rotation_alone_lets_bodies_meet(law: Any) -> None:
     assert found["time"][0, 0] == pytest.approx(exact, rel=1e-12)
 
 
-@pytest.mark.parametrize("body", [rs.Ring, rs.Mesh, rs.Egg])
+BOXLIKE = rs.Superellipsoid(semi_axes=(3e-3, 2e-3, 1e-3), exponents=(4, 9))
+
+
+@pytest.mark.parametrize("body", [rs.Ring.example(), rs.Mesh.example(), rs.Egg.example(), BOXLIKE])
 def test_bodies_that_are_not_followed_are_refused(body: Any) -> None:
     with pytest.raises(ValueError, match=r"^body = "):
-        drawn(body.example())
+        drawn(body)
 
 
 CAPSULE = rs.Spherocylinder(radius=0.5, separation=2.0)

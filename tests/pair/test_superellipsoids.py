@@ -10,7 +10,7 @@ import restitution as rs
 
 ELASTIC = rs.Frictionless(normal=1.0)
 AXES = (1.0, 0.8, 1.4)
-EXPONENTS = [(4.0, 3.0), (8.0, 8.0), (1.5, 1.3), (20.0, 2.0), (100.0, 100.0)]
+EXPONENTS = [(4.0, 3.0), (8.0, 8.0), (1.5, 1.3), (7.0, 2.0)]
 
 
 def body_of(exponents: Any, axes: Any = AXES) -> rs.Superellipsoid:
@@ -69,8 +69,8 @@ def test_what_touches_has_a_point_and_a_normal_in_common(exponents: Any) -> None
             place = data.position_before[k, i].to_numpy() + time * data.velocity_before[k, i].to_numpy()
             arm = turned(data, i)[k].inv().apply(data.point[k, 0].to_numpy() - place)
             size, normal = surface(arm, own, powers)
-            # Powers multiply the rounding of logarithms by the exponent.
-            assert size == pytest.approx(1.0, abs=1e-11 * max(powers))
+            # The last step leaves a gap of 2^-52 of the size; powers multiply the rounding of logarithms.
+            assert size == pytest.approx(1.0, abs=1e-11)
             normals.append(turned(data, i)[k].apply(normal))
         normal = data.normal[k, 0].to_numpy()
         assert normals[1] @ normal == pytest.approx(1.0, abs=1e-6)

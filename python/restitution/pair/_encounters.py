@@ -211,9 +211,9 @@ def encounters(
     ----------
     body : Dumbbell or another body
         The first body: made of balls (Dumbbell, Clump, RoughSphere and others, and these in Rough), a
-        Spheroid, Ellipsoid or Superellipsoid, a Spherocylinder, a polyhedron (ConvexPolyhedron, Box, Die) or
-        a Cylinder. Of others only the convex hull is known, which is all that touches a plane, but not enough
-        here.
+        Spheroid or Ellipsoid, a Superellipsoid with exponents up to 8, a Spherocylinder, a polyhedron
+        (ConvexPolyhedron, Box, Die) or a Cylinder. Of others only the convex hull is known, which is all that
+        touches a plane, but not enough here.
     other : such a body, or Plane
         The second one. A plane is at rest, and there is no gravity.
     law : Law or CustomLaw

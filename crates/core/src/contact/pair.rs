@@ -608,12 +608,7 @@ fn freely(
     };
     let mut now = RoundGap::new(n, between, rounds);
     let flat = rounds.iter().any(is_flat);
-    let (rounds_at_most, least) = if flat {
-        (FLAT_ROUNDS, 1e-15)
-    } else {
-        (ROUNDS, 1e-7)
-    };
-    for _ in 0..rounds_at_most {
+    for _ in 0..if flat { FLAT_ROUNDS } else { ROUNDS } {
         let first = tie.map_or_else(|| n.across(), |tie| tie / tie.norm());
         let second = n.cross(first);
         // Slope along both, and curvature: radii of curvature, and the gap, as n stays a unit vector.
@@ -651,10 +646,18 @@ fn freely(
         let size = square.sqrt();
         let mut part = (0.7 / size).min(1.0);
         let step = first * x + second * y;
+        // What the step should gain, and what rounding hides of that where curvature knows no bound.
+        let gain = p * x + q * y;
+        let hidden = 4e-15 * now.pushed[0].1.max(now.pushed[1].1);
         loop {
             let next = untied(step.mul_add(part, n), tie)?;
             let there = RoundGap::new(next, between, rounds);
-            if there.width >= now.width || part * size < least {
+            let done = if flat {
+                part * gain < hidden
+            } else {
+                part * size < 1e-7
+            };
+            if done || there.width >= now.width {
                 (n, now) = (next, there);
                 break;
             }
@@ -662,8 +665,7 @@ fn freely(
         }
         // The error of n is about the square of the step, and that of the maximum of fourth order.
         let enough = |length: f64| length * square * square < 1e-3 * now.width;
-        let gained = !flat || p * x + q * y < 1e-16 * now.pushed[0].1.max(now.pushed[1].1);
-        if size < 1e-9 && gained || rough.is_some_and(enough) {
+        if size < 1e-9 && (gain < hidden || !flat) || rough.is_some_and(enough) {
             break;
         }
     }

@@ -196,7 +196,7 @@ impl AnyBody<'_> {
         found.ok_or_else(|| Error::Parameter {
             name,
             value: crate::Value::Name("this body".into()),
-            allowed: "made of balls, an ellipsoid or superellipsoid, a convex polyhedron, a cylinder or a spherocylinder: \
+            allowed: "made of balls, an ellipsoid, a superellipsoid with exponents up to 8, a convex polyhedron, a cylinder or a spherocylinder: \
                       the surface of another is not known where it is not on its convex hull, or not yet followed"
                 .into(),
         })

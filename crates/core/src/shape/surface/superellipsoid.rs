@@ -11,6 +11,9 @@ use crate::math::{Quaternion, Vector};
 use crate::simd::elementary::{exp_m1_in_lanes, ln};
 use crate::simd::one;
 
+/// Of the exponent 8: where the surface is flatter, a normal in double precision hardly tells where two of them touch.
+const LEAST_DUAL: f64 = 1.142_857_142_857;
+
 /// A superellipsoid about the origin, its axes those of space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Superellipsoid {
@@ -173,7 +176,8 @@ impl ConvexSurface for Superellipsoid {
 
     fn piece(&self, axes: Quaternion, centre: Vector, unit: f64) -> Option<Piece> {
         let surface = self.scaled(1.0 / unit, 0.0);
-        Some(Piece::superellipsoid(surface, axes, centre * unit, unit))
+        let found = self.dual.iter().all(|&p| p >= LEAST_DUAL);
+        found.then(|| Piece::superellipsoid(surface, axes, centre * unit, unit))
     }
 }
 
