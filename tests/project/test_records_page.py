@@ -74,3 +74,8 @@ def test_the_tables_of_the_core_are_all_there() -> None:
 @pytest.mark.parametrize("name", _core.STOP_REASONS)
 def test_every_reason_to_stop_has_a_row(name: str) -> None:
     assert f"| {_core.STOP_REASONS.index(name)} | `{name}` |" in PAGE
+
+
+def test_endings_have_their_numbers() -> None:
+    for number, name in enumerate(_core.PAIR_ENDINGS):
+        assert f"{number} `{name}`" in PAGE
