@@ -8,7 +8,7 @@
 //!
 //! where **Y** joins the centres of the parts and K is half the sum of q|**P**|D, D the largest distance of a point without the ball ϱ from **Λ**.
 
-use super::certify::INVISIBLE;
+use super::certify::{INVISIBLE, zero as zero_of};
 use super::pair::{NARROW, ROUNDS};
 use crate::math::{UNITS, Vectors};
 use crate::shape::{Piece, PieceKind, Round};
@@ -106,7 +106,7 @@ impl<S: Simd> BallGaps<S> {
         let closes = self.rate.lt(0.0);
         let (square, twice) = (speed * speed, width + width);
         let whole = speed + twice.mul_add(self.bound, square).sqrt();
-        let root = closes.select(twice, whole) / closes.select(whole, self.bound);
+        let root = zero_of(width, self.rate, whole, whole, self.bound);
         let until = (self.distance + self.distance) * speed / (square + self.spread);
         let beyond = twice.mul_add(self.bound - self.bent, square);
         let bent = twice / (speed + beyond.max(0.0).sqrt());
@@ -320,7 +320,7 @@ impl RoundParts<'_> {
         let closes = rate.lt(0.0);
         let away = rate.max(-rate);
         let whole = away + (width + width).mul_add(twice, away * away).sqrt();
-        let root = closes.select(width + width, whole) / closes.select(whole, twice);
+        let root = zero_of(width, rate, whole, whole, twice);
         let shortest = (INVISIBLE * self.reach / twice).sqrt();
         let mut after = closes.select(root, root.max(shortest));
         let open = zero.lt(width);

@@ -203,8 +203,15 @@ pub const HIT: &[PairVariable] = &[
     ),
 ];
 
-/// The numbers of an encounter.
-const ALL_NUMBERS: usize = 70;
+/// The numbers of all of [`ENCOUNTER`].
+const ALL_NUMBERS: usize = {
+    let (mut sum, mut i) = (0, 0);
+    while i < ENCOUNTER.len() {
+        sum += width(&ENCOUNTER[i]);
+        i += 1;
+    }
+    sum
+};
 /// The variables of [`ENCOUNTER`] that come before those that only states need.
 const WITHOUT_STATES: usize = 18;
 
@@ -236,16 +243,15 @@ impl PairTable {
 struct Encountered<'a> {
     /// The bodies before.
     before: &'a [PairState; 2],
-    /// The end, and the bodies then.
-    outcome: &'a Outcome<FreeBody>,
-    after: [PairState; 2],
+    /// The end.
+    outcome: Outcome,
     /// The first contact, if there was one.
     first: Option<Hit>,
 }
 
 /// The number of components of a variable, of both bodies together.
-pub fn width(&(.., parts, each): &PairVariable) -> usize {
-    parts * (1 + usize::from(each))
+pub const fn width(&(.., parts, each): &PairVariable) -> usize {
+    parts * if each { 2 } else { 1 }
 }
 
 impl Encounters<'_> {
@@ -327,9 +333,9 @@ impl Encounters<'_> {
         let Encountered {
             before,
             outcome,
-            after,
             first,
         } = found;
+        let after = &outcome.states;
         let [one, two] = self.bodies;
         let relative = |states: &[PairState; 2]| states[0].velocity - states[1].velocity;
         let (u, later) = (relative(before), relative(after));
@@ -461,18 +467,16 @@ impl WithSimd for EncounterBlock<'_, '_, '_, '_> {
         for (row, (end, before)) in ends.zip(&before).enumerate() {
             let hits = &mut hits[row];
             let outcome = match end {
-                Ok(outcome) => outcome,
+                Ok(outcome) => outcome.given(bodies),
                 Err(trouble) => {
                     let trouble = trouble.clone();
                     return Err(failed(law, trouble, (seed, first + row as u64), hits.len()));
                 }
             };
-            let [one, two] = &outcome.states;
             hits.truncate(outcome.contacts as usize);
             let found = Encountered {
                 before,
                 outcome,
-                after: [one.state(bodies[0]), two.state(bodies[1])],
                 first: hits.first().copied(),
             };
             encounters.write(&found, &mut numbers);

@@ -8,9 +8,7 @@ use super::partner::{PairState, Partner};
 use crate::Error;
 use crate::math::{Quaternion, Vector};
 use crate::random::of_encounters;
-use crate::simd::Level;
 use crate::simd::elementary::{ln, sincos};
-use pulp::{Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
 
 /// Three normal numbers from uniform ones in [0, 1), by G. E. P. Box and M. E. Muller (1958).
@@ -221,61 +219,7 @@ pub(crate) struct DrawRows {
     seed: u64,
     first: u64,
     rows: usize,
-    /// Of those that have been asked for, as many as a draw has in each row.
-    numbers: Vec<Vec<[f64; 4]>>,
-    /// The pairs of uniform numbers in these.
-    pairs: u32,
-}
-
-/// What is drawn.
-#[derive(Clone, Copy)]
-enum Drawn {
-    /// Two uniform numbers in [0, 1).
-    Uniform,
-    /// Three normal numbers.
-    Normals,
-    /// A quaternion.
-    Attitude,
-}
-
-/// Makes of two rows of pairs of uniform numbers what is drawn; what is done here has no packs, but compilers take several rows at once.
-struct DrawColumn<'a> {
-    kind: Drawn,
-    pairs: &'a [Vec<(f64, f64)>; 2],
-    numbers: &'a mut [[f64; 4]],
-}
-
-impl WithSimd for DrawColumn<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let [one, two] = self.pairs;
-        let rows = self.numbers.len();
-        let (one, two) = (&one[..rows], &two[..rows]);
-        match self.kind {
-            Drawn::Uniform => {
-                for (numbers, &(a, b)) in self.numbers.iter_mut().zip(one) {
-                    *numbers = [a, b, 0.0, 0.0];
-                }
-            }
-            Drawn::Normals => {
-                for row in 0..rows {
-                    let [x, y, z] = normals([one[row], two[row]]);
-                    self.numbers[row] = [x, y, z, 0.0];
-                }
-            }
-            Drawn::Attitude => {
-                for row in 0..rows {
-                    let ((a, b), (c, _)) = (one[row], two[row]);
-                    let ((s, t), (u, v)) = (sincos(TAU * b), sincos(TAU * c));
-                    let (p, q) = ((1.0 - a).sqrt(), a.sqrt());
-                    let attitude = Quaternion::new(p * s, p * t, q * u, q * v);
-                    self.numbers[row] = attitude.normalized().parts();
-                }
-            }
-        }
-    }
+    numbers: Vec<Vec<(f64, f64)>>,
 }
 
 impl DrawRows {
@@ -285,7 +229,6 @@ impl DrawRows {
             first,
             rows,
             numbers: Vec::new(),
-            pairs: 0,
         }
     }
 
@@ -300,27 +243,19 @@ impl DrawRows {
     }
 
     #[cold]
-    fn fill(&mut self, kind: Drawn) {
-        let mut pairs = [(); 2].map(|()| vec![(0.0, 0.0); self.rows]);
-        let count = match kind {
-            Drawn::Uniform => 1,
-            Drawn::Normals | Drawn::Attitude => 2,
-        };
-        for own in &mut pairs[..count] {
-            of_encounters(self.seed, self.first, self.pairs, own);
-            self.pairs += 1;
-        }
-        let mut numbers = vec![[0.0; 4]; self.rows];
-        Level::run_scalar(DrawColumn {
-            kind,
-            pairs: &pairs,
-            numbers: &mut numbers,
-        });
+    fn fill(&mut self) {
+        let mut numbers = vec![(0.0, 0.0); self.rows];
+        of_encounters(
+            self.seed,
+            self.first,
+            self.numbers.len() as u32,
+            &mut numbers,
+        );
         self.numbers.push(numbers);
     }
 }
 
-/// The random numbers of an encounter; each asks for the same kinds in the same order.
+/// The random numbers of an encounter.
 pub(crate) struct Draws<'a> {
     all: &'a mut DrawRows,
     row: usize,
@@ -329,26 +264,18 @@ pub(crate) struct Draws<'a> {
 
 impl Draws<'_> {
     #[inline(always)]
-    fn next(&mut self, kind: Drawn) -> [f64; 4] {
+    pub fn pair(&mut self) -> (f64, f64) {
         if self.draw == self.all.numbers.len() {
-            self.all.fill(kind);
+            self.all.fill();
         }
         self.draw += 1;
         self.all.numbers[self.draw - 1][self.row]
     }
 
-    /// Two uniform numbers in [0, 1).
-    #[inline(always)]
-    pub fn pair(&mut self) -> (f64, f64) {
-        let [a, b, ..] = self.next(Drawn::Uniform);
-        (a, b)
-    }
-
     /// Three normal numbers.
     #[inline(always)]
     pub fn normals(&mut self) -> [f64; 3] {
-        let [x, y, z, _] = self.next(Drawn::Normals);
-        [x, y, z]
+        normals([self.pair(), self.pair()])
     }
 
     /// ω, in the principal axes, of a Maxwellian with a temperature about each of them.
@@ -363,7 +290,9 @@ impl Draws<'_> {
     /// An attitude, uniform on SO(3): K. Shoemake, *Uniform random rotations*, Graphics Gems III (1992).
     #[inline(always)]
     pub fn attitude(&mut self) -> Quaternion {
-        let [w, x, y, z] = self.next(Drawn::Attitude);
-        Quaternion::new(w, x, y, z)
+        let ((a, b), (c, _)) = (self.pair(), self.pair());
+        let ((s, t), (u, v)) = (sincos(TAU * b), sincos(TAU * c));
+        let (p, q) = ((1.0 - a).sqrt(), a.sqrt());
+        Quaternion::new(p * s, p * t, q * u, q * v).normalized()
     }
 }
