@@ -1,5 +1,5 @@
 //! Contacts that take more than one step, out of many vectors: they wait in a queue for a lane, so that no lane is idle while others
-//! are under way. Those whose direction hardly turns any more go on in lanes of their own, where all take the same steps.
+//! are under way.
 
 use super::{Course, Goal, OngoingImpacts, Origin, Rates, Slipping};
 use crate::law::{Contact, Hypothesis, Response};
@@ -78,15 +78,6 @@ impl<S: Simd> Slipping<S, 1> {
 }
 
 impl<S: Simd> OngoingImpacts<S> {
-    /// Puts lane k of others into a lane.
-    #[inline(always)]
-    fn put(&mut self, lane: usize, others: &Self, k: usize) {
-        self.rates.put(lane, &others.rates, k);
-        self.goal.put(lane, &others.goal, k);
-        self.course.put(lane, &others.course, k);
-        self.origin.put(lane, &others.origin, k);
-    }
-
     /// Takes others in the lanes of the mask.
     #[inline(always)]
     fn take(&mut self, mask: Mask<S, 1>, others: &Self) {
@@ -169,58 +160,6 @@ impl<S: Simd> TurningLanes<S> {
             }
         }
     }
-
-    /// Hands the contacts whose direction hardly turns any more over to other lanes, which go on whenever all are taken.
-    #[inline(always)]
-    pub fn hand_over(&mut self, others: &mut Self, pending: &mut [Pending<S>]) {
-        let straight = self.impacts.is_straight();
-        if !straight.any() {
-            return;
-        }
-        straight.each(|lane| {
-            if others.places.iter().flatten().count() == Pack::<S, 1>::WIDTH {
-                others.finish(pending);
-            }
-            let free = others.places.iter().position(Option::is_none);
-            let free = free.expect("contacts that are finished leave their lanes");
-            others.places[free] = self.places[lane].take();
-            others.impacts.put(free, &self.impacts, lane);
-        });
-        self.impacts.course.over = self.impacts.course.over | straight;
-    }
-
-    /// Takes all contacts to their ends.
-    #[inline(never)]
-    pub fn finish(&mut self, pending: &mut [Pending<S>]) {
-        let simd = pending[0].open.simd();
-        simd.vectorize(FinishLanes {
-            lanes: self,
-            pending,
-        });
-    }
-}
-
-/// [`TurningLanes::finish`], to be compiled once.
-struct FinishLanes<'a, S: Simd> {
-    lanes: &'a mut TurningLanes<S>,
-    pending: &'a mut [Pending<S>],
-}
-
-impl<S: Simd> WithSimd for FinishLanes<'_, S> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<T: Simd>(self, _: T) {
-        let Self { lanes, pending } = self;
-        while !lanes.is_empty() {
-            lanes.impacts.follow();
-            if !lanes.is_empty() {
-                lanes.impacts.advance();
-                lanes.impacts.stop();
-            }
-            lanes.end(pending);
-        }
-    }
 }
 
 /// Finds the responses that are open.
@@ -254,7 +193,6 @@ impl<S: Simd> WithSimd for Finish<'_, S> {
         } = self;
         let mut waiting = Waiting::default();
         let mut turning = TurningLanes::new(pending, friction, hypothesis);
-        let mut straight = turning;
         loop {
             turning.begin(&mut waiting, pending);
             if turning.is_empty() {
@@ -262,12 +200,10 @@ impl<S: Simd> WithSimd for Finish<'_, S> {
             }
             turning.impacts.stop();
             turning.end(pending);
-            turning.hand_over(&mut straight, pending);
             if !turning.is_empty() {
                 turning.impacts.advance();
                 turning.end(pending);
             }
         }
-        straight.finish(pending);
     }
 }
