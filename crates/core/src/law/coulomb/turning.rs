@@ -841,7 +841,7 @@ fn events<S: Simd, const K: usize>(
     near.select(wanted, far).min(crest)
 }
 
-/// The lanes that have gone too far on the way from `at` to `end`, and the distance at which they should have stopped.
+/// The lanes that have gone too far on the way from `at` to `end`: an event is too far behind the end for the series.
 #[inline(always)]
 fn beyond<S: Simd, const K: usize>(
     rates: &Rates<S, K>,
@@ -849,62 +849,22 @@ fn beyond<S: Simd, const K: usize>(
     at: &Course<S, K>,
     end: &Course<S, K>,
     length: Pack<S, K>,
-) -> (Mask<S, K>, Pack<S, K>) {
+) -> Mask<S, K> {
     let zero = Pack::splat(at.v.simd(), 0.0);
     let y = end.w * end.w / (4.0 * end.a * end.a);
     let slip = end.a * (1.0 + y);
-    let inverse = 1.0 / rates.pace(y);
-    let (before, after) = (rates.slope(at.y), rates.slope(y));
-    // v_c^n = 0: what was missing, how far it is beyond, and both slopes.
+    let reach = 0.5 / rates.pace(y);
+    let is_far = |off: Pack<S, K>, rate: Pack<S, K>| zero.lt(off) & !off.le(rate * reach);
+    let after = rates.slope(y);
     let sign = at.compressing.select(1.0, zero - 1.0);
-    let rests = Beyond {
-        value: -sign * at.v,
-        off: sign * end.v,
-        early: sign * at.slip * before * length,
-        late: sign * slip * after * inverse,
+    let rests = is_far(sign * end.v, sign * slip * after);
+    let rate = match goal.hypothesis {
+        Hypothesis::Newton => slip * after,
+        Hypothesis::Poisson => slip * (1.0 + y),
+        Hypothesis::Stronge => end.v * slip * (1.0 + y),
     };
-    // The end of the restitution.
-    let (early, late) = match goal.hypothesis {
-        Hypothesis::Newton => (at.slip * before, slip * after),
-        Hypothesis::Poisson => (at.slip * (1.0 + at.y), slip * (1.0 + y)),
-        Hypothesis::Stronge => (at.v * at.slip * (1.0 + at.y), end.v * slip * (1.0 + y)),
-    };
-    let ends = Beyond {
-        value: goal.missing(at),
-        off: -goal.missing(end),
-        early: early * length,
-        late: late * inverse,
-    };
-    let forward = zero.lt(length);
-    let (at_rest, at_end) = (
-        rests.is_far() & forward,
-        ends.is_far() & forward & !at.compressing,
-    );
-    let rest = at_rest.select(rests.share(), 1.0);
-    let share = at_end.select(ends.share(), 1.0).min(rest);
-    (at_rest | at_end, share.max(1.0 / 64.0).min(0.9) * length)
-}
-
-/// An event that is behind the end of a way.
-struct Beyond<S: Simd, const K: usize> {
-    value: Pack<S, K>,
-    off: Pack<S, K>,
-    early: Pack<S, K>,
-    late: Pack<S, K>,
-}
-
-impl<S: Simd, const K: usize> Beyond<S, K> {
-    /// Returns whether it is too far behind for the series.
-    #[inline(always)]
-    fn is_far(&self) -> Mask<S, K> {
-        Pack::splat(self.off.simd(), 0.0).lt(self.off) & !self.off.le(0.5 * self.late)
-    }
-
-    /// At which share of the way it is, on a parabola.
-    #[inline(always)]
-    fn share(&self) -> Pack<S, K> {
-        parabola(self.early, self.off + self.value - self.early, self.value)
-    }
+    let ends = is_far(-goal.missing(end), rate) & !at.compressing;
+    zero.lt(length) & (rests | ends)
 }
 
 // ========================================================================================================
@@ -1350,8 +1310,6 @@ impl<S: Simd, const K: usize> VanishingSlip<S, K> {
 // The whole impact
 // ========================================================================================================
 
-/// Least y of a slip that comes round to be looked at from the other side.
-const ROUND: f64 = 1.0 / 4.0;
 /// Panels after which the slip is taken to have vanished.
 const MOST_PANELS: f64 = 1000.0;
 
@@ -1444,13 +1402,6 @@ impl<S: Simd> OngoingImpacts<S> {
         let back = course.u.lt(0.0) | course.u.eq(0.0) & rates.nu.lt(0.0);
         course.turn_round(back, rates);
         course.direction();
-        // Or against it, where it comes round and is nearer to the direction to which it turns: y then falls.
-        let ahead = rates.plus.lt(0.0) & (rates.minus * course.y).le(rates.plus);
-        let comes = ahead & !course.y.lt(ROUND);
-        if comes.any() {
-            course.turn_round(comes, rates);
-            course.direction();
-        }
 
         // What is left is a straight line in p where the slip has vanished, or goes on along **u** for ever.
         let straight = course.w.le(VANISHED) & rates.decay.le(0.0) & course.y.lt(1.0);
@@ -1486,10 +1437,10 @@ impl<S: Simd> OngoingImpacts<S> {
         let path = Hodograph::new(rates, course.y);
         let length = wanted.min(course.limit).min(path.longest(rates, course));
         let mut next = integrate_panel((rates, &path), goal, course, length);
-        let (back, limit) = beyond(rates, goal, course, &next, length);
-        next.limit = Pack::splat(limit.simd(), f64::INFINITY);
+        let back = beyond(rates, goal, course, &next, length);
+        next.limit = Pack::splat(length.simd(), f64::INFINITY);
         let mut again = *course;
-        again.limit = limit;
+        again.limit = 0.5 * length;
         let next = Course::choose(back, &again, &next);
         *course = Course::choose(course.over, course, &next);
         self.origin.panels = self.origin.panels + 1.0;

@@ -4,7 +4,7 @@
 use super::{Course, Goal, OngoingImpacts, Origin, Rates, Slipping};
 use crate::law::{Contact, Hypothesis, Response};
 use crate::simd::{LANES, Mask, Pack};
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 
 /// A vector of contacts, and the answers of which some are not known yet.
 #[derive(Clone, Copy)]
@@ -29,7 +29,7 @@ impl<S: Simd> Pending<S> {
 
 /// The lanes that have not had their turn.
 #[derive(Default)]
-pub(super) struct Waiting {
+struct Waiting {
     vector: usize,
     lane: usize,
 }
@@ -92,7 +92,7 @@ impl<S: Simd> OngoingImpacts<S> {
 
 /// Contacts under way.
 #[derive(Clone, Copy)]
-pub(super) struct TurningLanes<S: Simd> {
+struct TurningLanes<S: Simd> {
     pub impacts: OngoingImpacts<S>,
     friction: f64,
     hypothesis: Hypothesis,
@@ -165,45 +165,18 @@ impl<S: Simd> TurningLanes<S> {
 /// Finds the responses that are open.
 #[inline(always)]
 pub(super) fn finish<S: Simd>(pending: &mut [Pending<S>], friction: f64, hypothesis: Hypothesis) {
-    let Some(first) = pending.first() else { return };
-    let simd = first.open.simd();
-    simd.vectorize(Finish {
-        pending,
-        friction,
-        hypothesis,
-    });
-}
-
-/// [`finish`], to be compiled once.
-struct Finish<'a, S: Simd> {
-    pending: &'a mut [Pending<S>],
-    friction: f64,
-    hypothesis: Hypothesis,
-}
-
-impl<S: Simd> WithSimd for Finish<'_, S> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<T: Simd>(self, _: T) {
-        let Self {
-            pending,
-            friction,
-            hypothesis,
-        } = self;
-        let mut waiting = Waiting::default();
-        let mut turning = TurningLanes::new(pending, friction, hypothesis);
-        loop {
-            turning.begin(&mut waiting, pending);
-            if turning.is_empty() {
-                break;
-            }
-            turning.impacts.stop();
+    let mut waiting = Waiting::default();
+    let mut turning = TurningLanes::new(pending, friction, hypothesis);
+    loop {
+        turning.begin(&mut waiting, pending);
+        if turning.is_empty() {
+            break;
+        }
+        turning.impacts.stop();
+        turning.end(pending);
+        if !turning.is_empty() {
+            turning.impacts.advance();
             turning.end(pending);
-            if !turning.is_empty() {
-                turning.impacts.advance();
-                turning.end(pending);
-            }
         }
     }
 }
