@@ -102,15 +102,20 @@ impl Quadrature {
     /// The largest of the last two coefficients of Legendre's series.
     #[inline(always)]
     pub fn last(&self, values: &Nodal) -> f64 {
-        let [one, other] = [NODES - 2, NODES - 1].map(|k| dot(&self.legendre[k], values).abs());
-        one.max(other)
+        let one = dot(&self.legendre[NODES - 2], values).abs();
+        one.max(dot(&self.legendre[NODES - 1], values).abs())
     }
 
     /// The place between `low` and `high` at which the integral from 0 of a function that keeps its sign there has this value: Newton's
     /// method within a bracket.
     #[inline(always)]
-    pub fn located(&self, density: &Nodal, value: f64, (from, end): (f64, f64)) -> f64 {
-        let whole = rows(&self.integral, density);
+    pub fn located(
+        &self,
+        density: &Nodal,
+        whole: &Nodal,
+        value: f64,
+        (from, end): (f64, f64),
+    ) -> f64 {
         let rising = dot(&self.weights, density) > value;
         let is_before = |x: f64| (x < value) == rising;
         let (mut low, mut high) = (from, end);
@@ -137,7 +142,7 @@ impl Quadrature {
         }
         for _ in 0..60 {
             let weights = self.interpolation(t);
-            let found = dot(&weights, &whole);
+            let found = dot(&weights, whole);
             if is_before(found) {
                 low = t;
             } else {

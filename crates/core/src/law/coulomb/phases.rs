@@ -64,25 +64,38 @@ impl ImpactSoFar {
         }
     }
 
-    /// The impulse until the present phase is over, if dv_n/dp stays what it is; infinite if it then never is.
-    pub fn left(&self, stiffness: f64) -> f64 {
+    /// The impulse until the present phase is over, and until the impact is, if dv_n/dp stays what it is; infinite if they then never are.
+    pub fn left(&self, stiffness: f64) -> [f64; 2] {
         if self.compressing {
-            return if stiffness > 0.0 {
-                (self.wanted_speed() - self.speed) / stiffness
-            } else {
+            if stiffness <= 0.0 {
+                return [f64::INFINITY; 2];
+            }
+            let left = (self.wanted_speed() - self.speed) / stiffness;
+            let more = match self.hypothesis {
+                Hypothesis::Newton => 0.0,
+                _ => self.restitution * (self.normal + left),
+            };
+            return [left, left + more];
+        }
+        let mut left = self.missing();
+        if self.hypothesis == Hypothesis::Stronge {
+            let square = self.speed * self.speed + 2.0 * stiffness * left;
+            left = if square < 0.0 {
                 f64::INFINITY
+            } else {
+                2.0 * left / (self.speed + square.sqrt())
             };
         }
-        let left = self.missing();
-        if self.hypothesis != Hypothesis::Stronge {
-            return left;
-        }
-        let square = self.speed * self.speed + 2.0 * stiffness * left;
-        if square < 0.0 {
-            f64::INFINITY
-        } else {
-            2.0 * left / (self.speed + square.sqrt())
-        }
+        [left; 2]
+    }
+
+    /// Returns whether the restitution has to give only a small part of this.
+    pub fn is_almost_over(&self, gain: &Gain) -> bool {
+        let whole = match self.hypothesis {
+            Hypothesis::Stronge => gain.work,
+            _ => gain.normal,
+        };
+        !self.compressing && self.missing() < 0.1 * whole
     }
 
     pub fn add(&mut self, gain: &Gain) {
@@ -100,15 +113,6 @@ impl ImpactSoFar {
             self.restitution * self.approach
         } else {
             0.0
-        }
-    }
-
-    /// The present phase, and the restitution after it, in phases as long as the present one.
-    pub fn phases_left(&self) -> f64 {
-        if self.compressing && self.hypothesis != Hypothesis::Newton {
-            1.0 + self.restitution
-        } else {
-            1.0
         }
     }
 

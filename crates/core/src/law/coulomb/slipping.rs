@@ -58,6 +58,8 @@ const CLEAR: f64 = 2.5;
 /// The largest changes of ln ρ in a panel in which places are located, and in one that is only passed.
 const STEEP: f64 = 9.0;
 const STEEPEST: f64 = 30.0;
+/// The most by which a panel is longer than the way to the end of the impact, as far as one can tell.
+const AMPLE: f64 = 2.2;
 /// The largest length of a panel in ln w.
 const LONGEST: f64 = 6.0;
 /// The largest a from which the way to the rest is one piece; beyond it ρ falls before the slip has turned.
@@ -286,8 +288,10 @@ struct Sector {
     /// The coefficients of R, and α and β.
     growth: [f64; 5],
     drive: [f64; 2],
-    /// The singularities in the upper half of the plane of ln w, roughly: real part and imaginary part.
+    /// The singularities in the upper half of the plane of w.
     singular: [[f64; 2]; 3],
+    /// And in that of ln w, roughly.
+    singular_ln: [[f64; 2]; 3],
 }
 
 impl Sector {
@@ -328,16 +332,11 @@ impl Sector {
         let (c2, s2) = (ray[0] * ray[0], ray[1] * ray[1]);
         let along = axes.brake[0] * c2 + axes.brake[1] * s2;
         let across = axes.brake[0] * s2 + axes.brake[1] * c2;
-        // ln w of z = x + iy.
+        // w of z = x + iy.
         let place = |x: f64, y: f64| {
             let (a, b) = (1.0 - k * x, -k * y);
-            let size = a * a + b * b;
-            let (x, y) = ((x * a + y * b) / size, ((y * a - x * b) / size).abs());
-            let angle = FRAC_PI_2 * y / (x.abs() + y); // to within 0.08
-            [
-                0.5 * rough_ln(x * x + y * y),
-                if x < 0.0 { PI - angle } else { angle },
-            ]
+            let inverse = 1.0 / (a * a + b * b);
+            [(x * a + y * b) * inverse, ((y * a - x * b) * inverse).abs()]
         };
         let discriminant = turn[1] * turn[1] - 4.0 * turn[0] * turn[2];
         let mut singular = [place(0.0, 1.0); 3];
@@ -372,16 +371,25 @@ impl Sector {
             ],
             drive: [alpha, beta],
             singular,
+            singular_ln: singular.map(|[x, y]| {
+                let angle = FRAC_PI_2 * y / (x.abs() + y); // to within 0.08
+                [
+                    0.5 * rough_ln(x * x + y * y),
+                    if x < 0.0 { PI - angle } else { angle },
+                ]
+            }),
         };
         (sector, 1.0 / (half_cotangent(ray, d, side) - k))
     }
 
     /// a, d ln ρ/d ln w on the ray.
+    #[inline(always)]
     fn power(&self) -> f64 {
         self.growth[0] / self.turn[0]
     }
 
     /// The direction at w.
+    #[inline(always)]
     fn direction(&self, w: f64) -> [f64; 2] {
         let q = 1.0 + self.k * w;
         let whole = 1.0 / (w * w + q * q);
@@ -390,6 +398,7 @@ impl Sector {
     }
 
     /// −d ln w/dθ.
+    #[inline(always)]
     fn pace(&self, w: f64) -> f64 {
         let q = 1.0 + self.k * w;
         let t = w - self.middle * q;
@@ -398,10 +407,11 @@ impl Sector {
     }
 
     /// The longest panel from w on in which the functions are polynomials to rounding: from (|x₀ − x_i| + |x₁ − x_i|)/|x₀ − x₁| = [`CLEAR`].
+    #[inline(always)]
     fn reach(&self, w: f64) -> f64 {
         let x = rough_ln(w);
         let mut length = LONGEST;
-        for [re, im] in self.singular {
+        for [re, im] in self.singular_ln {
             let (u, v) = (re - x, im);
             let distance = (u * u + v * v).sqrt();
             length = length.min(2.0 * (u + CLEAR * distance) / (CLEAR * CLEAR - 1.0));
@@ -410,18 +420,15 @@ impl Sector {
     }
 
     /// Returns whether the functions are polynomials in w from 0 on.
+    #[inline(always)]
     fn is_clear(&self, w: f64) -> bool {
-        let x = rough_ln(w);
-        self.singular.iter().all(|[re, im]| {
-            let size = exp((re - x).clamp(-50.0, 50.0));
-            // |1 − ζ| for ζ = size·e^{i im}, by a chord for the cosine
-            let off = im / PI;
-            let cosine = 1.0 - 2.0 * off * off * (3.0 - 2.0 * off);
-            (1.0 + size * size - 2.0 * size * cosine).max(0.0).sqrt() + size >= CLEAR
-        })
+        self.singular
+            .iter()
+            .all(|&[x, y]| norm([x - w, y]) + norm([x, y]) >= CLEAR * w)
     }
 
     /// The length in ln w to the next place where dv_n/dp is 0.
+    #[inline(always)]
     fn monotone(&self, axes: &PrincipalFrame, w: f64) -> f64 {
         let mut length = f64::INFINITY;
         if axes.may_jam {
@@ -465,8 +472,20 @@ impl Sector {
     /// dp, and dp times cos δ and sin δ.
     #[inline(always)]
     fn parts(impulse: Nodal, cosine: &Nodal, sine: &Nodal) -> [Nodal; 3] {
-        let [along, across] = [cosine, sine].map(|part| each(|j| impulse[j] * part[j]));
+        // A closure over arrays would be compiled for the least SIMD level.
+        let along = each(|j| impulse[j] * cosine[j]);
+        let across = each(|j| impulse[j] * sine[j]);
         [impulse, along, across]
+    }
+
+    /// Sums of these with weights.
+    #[inline(always)]
+    fn sums(weights: &Nodal, [impulse, along, across]: &[Nodal; 3]) -> [f64; 3] {
+        [
+            dot(weights, impulse),
+            dot(weights, along),
+            dot(weights, across),
+        ]
     }
 
     /// dv_n from these.
@@ -487,6 +506,8 @@ struct Panel {
     growth: Nodal,
     parts: [Nodal; 3],
     rise: Nodal,
+    /// v_n at the nodes less that at the beginning of the panel.
+    risen: Nodal,
     /// The impact is at this part of the panel, and the weights of an integral from its beginning to there.
     at: f64,
     past: Nodal,
@@ -525,12 +546,14 @@ impl Panel {
         let size = -length * rho;
         let impulse = each(|j| size * exp(change[j]) * pace[j]);
         let parts = Sector::parts(impulse, &cosine, &sine);
+        let rise = sector.rise(axes, &parts);
         Self {
             w,
             rho,
             length,
             growth,
-            rise: sector.rise(axes, &parts),
+            risen: rows(&QUADRATURE.integral, &rise),
+            rise,
             parts,
             at: 0.0,
             past: [0.0; NODES],
@@ -548,17 +571,30 @@ impl Panel {
     #[inline(always)]
     fn work(&self, speed: f64) -> Nodal {
         let start = speed - dot(&self.past, &self.rise);
-        let rise = rows(&QUADRATURE.integral, &self.rise);
-        each(|j| (start + rise[j]) * self.parts[0][j])
+        each(|j| (start + self.risen[j]) * self.parts[0][j])
     }
 
     /// The part of the panel, up to `end`, at which an integral from where the impact is has this value.
     #[inline(always)]
     fn located(&self, density: &Nodal, gain: f64, end: f64) -> f64 {
+        self.located_on(density, &rows(&QUADRATURE.integral, density), gain, end)
+    }
+
+    /// The same for v_n.
+    #[inline(always)]
+    fn located_speed(&self, gain: f64, end: f64) -> f64 {
+        self.located_on(&self.rise, &self.risen, gain, end)
+    }
+
+    #[inline(always)]
+    fn located_on(&self, density: &Nodal, whole: &Nodal, gain: f64, end: f64) -> f64 {
         let value = gain + dot(&self.past, density);
-        QUADRATURE.located(density, value, (self.at, end))
+        QUADRATURE.located(density, whole, value, (self.at, end))
     }
 }
+
+/// The rates of a slip, and estimates of θ times its growth until the present phase and until the impact is over.
+type Outlook = (SlipRates, [f64; 2]);
 
 /// An impact under way.
 struct OngoingImpact<'a> {
@@ -596,6 +632,7 @@ impl WithSimd for &mut OngoingImpact<'_> {
 
 impl OngoingImpact<'_> {
     /// An impulse along the plane that does not count is below this, times the rate.
+    #[inline(always)]
     fn negligible(&self) -> f64 {
         let axes = self.axes;
         // No impact has less impulse than this.
@@ -648,7 +685,7 @@ impl OngoingImpact<'_> {
             stiffness = stiffness.max(f64::EPSILON * axes.nn);
         }
         let speed = self.now.speed;
-        let length = self.now.left(stiffness).max(0.0);
+        let length = self.now.left(stiffness)[0].max(0.0);
         let back = if !self.now.compressing && stiffness < 0.0 {
             -speed / stiffness
         } else {
@@ -689,6 +726,7 @@ impl OngoingImpact<'_> {
         let mut rho = norm(self.slip);
         let (sector, mut w) = Sector::of(axes, self.slip.map(|x| x / rho));
         let across = axes.rates(sector.ray).across;
+        let mut most = f64::INFINITY;
         for _ in 0..MOST_PIECES {
             let tiny = self.negligible();
             let (push, off) = (axes.friction * rho, 2.0 * w);
@@ -696,32 +734,25 @@ impl OngoingImpact<'_> {
                 self.slip = sector.ray.map(|x| x * rho);
                 return self.along(sector.ray, rho);
             }
-            if self.rests(&sector, w, rho) {
+            let outlook = self.outlook(&sector, [w, rho]);
+            if self.rests(&sector, [w, rho], &outlook) {
                 self.slip = [0.0; 2];
                 return false;
             }
-            let length = self.length(&sector, w, rho);
+            let length = self.length(&sector, w, &outlook).min(most);
             let mut panel = Panel::new(axes, &sector, w, rho, length);
+            most = f64::INFINITY;
             while panel.at < 0.999 {
                 let gain = self.gain(&sector, &panel, &QUADRATURE.weights);
-                let passes = self.now.passes(&gain);
-                let works = self.now.hypothesis == Hypothesis::Stronge;
-                if (passes || works) && !self.is_resolved(&sector, &panel) {
-                    self.rest_is_beyond |= passes;
-                    let [w, rho] = panel.state();
-                    let length = self.length(&sector, w, rho).min(0.5 * panel.length);
-                    panel = Panel::new(axes, &sector, w, rho, length);
-                } else if !passes {
+                if !self.now.passes(&gain) {
                     self.now.add(&gain);
                     (panel.at, panel.past) = (1.0, QUADRATURE.weights);
+                } else if !self.is_resolved(&sector, &panel, &gain) {
+                    self.rest_is_beyond = true;
+                    most = 0.5 * length;
+                    break;
                 } else if self.event(&sector, &mut panel, gain.speed) {
                     return true;
-                } else {
-                    // What is still to come is located as well in a panel of its own, if it is a small part of this one.
-                    let [w, rho] = panel.state();
-                    if self.length(&sector, w, rho) < 0.1 * panel.length {
-                        break;
-                    }
                 }
             }
             [w, rho] = panel.state();
@@ -730,22 +761,22 @@ impl OngoingImpact<'_> {
         true
     }
 
-    /// The rates of a slip, and an estimate of θ times its growth until the present phase is over.
-    fn outlook(&self, sector: &Sector, w: f64, rho: f64) -> (SlipRates, f64) {
+    #[inline(always)]
+    fn outlook(&self, sector: &Sector, [w, rho]: [f64; 2]) -> Outlook {
         let axes = self.axes;
         let d = sector.direction(w);
-        let left = self.now.left(axes.stiffness(axes.pull(d))).min(1e100);
-        (axes.rates(d), left * axes.rate / rho)
+        let ways = self.now.left(axes.stiffness(axes.pull(d)));
+        (axes.rates(d), ways.map(|p| p.min(1e100) * axes.rate / rho))
     }
 
-    /// The length of the next panel: no more than is needed until the present phase, and a restitution after it, are over.
-    fn length(&self, sector: &Sector, w: f64, rho: f64) -> f64 {
-        let (rates, left) = self.outlook(sector, w, rho);
+    /// The length of the next panel: as long as the functions are resolved, but not much longer than until the impact is over.
+    #[inline(always)]
+    fn length(&self, sector: &Sector, w: f64, (rates, [_, left]): &Outlook) -> f64 {
         let (growth, pace) = (rates.growth, sector.pace(w));
         let clear = sector.reach(w).min(sector.monotone(self.axes, w));
         let steep = (growth / pace).abs();
-        // p = ρ₀(e^{rθ} − 1)/r, with a tenth more.
-        let needed = 1.1 * self.now.phases_left() * left;
+        // p = ρ₀(e^{rθ} − 1)/r
+        let needed = AMPLE * left;
         let size = 1.0 + growth * needed;
         if size > 0.0 {
             let theta = if (growth * needed).abs() < 1e-3 {
@@ -763,9 +794,9 @@ impl OngoingImpact<'_> {
 
     /// Goes on to where the slip comes to rest, if one piece leads there, v_n is monotone until then, and nothing else happens before.
     #[inline(always)]
-    fn rests(&mut self, sector: &Sector, w: f64, rho: f64) -> bool {
+    fn rests(&mut self, sector: &Sector, [w, rho]: [f64; 2], outlook: &Outlook) -> bool {
         let power = sector.power();
-        let (rates, left) = self.outlook(sector, w, rho);
+        let (rates, [left, _]) = outlook;
         let growth = rates.growth.max(sector.growth[0]);
         if self.rest_is_beyond
             || !(0.0 < power && power < MOST_POWER)
@@ -795,8 +826,9 @@ impl OngoingImpact<'_> {
         let past = rows(&QUADRATURE.integral, &change);
         let impulse = each(|j| -rho * exp(whole - past[j]) * pace[j]);
         let parts = Sector::parts(impulse, &cosine, &sine);
+        let inverse = each(|k| 1.0 / (power + k as f64));
         let weights = rows(&QUADRATURE.legendre, &moments(power));
-        let sums = parts.each_ref().map(|part| dot(&weights, part));
+        let sums = Sector::sums(&weights, &parts);
         let is_rough = QUADRATURE.last(&change) > 1.5 * RESOLVED * whole.abs().max(1.0)
             || QUADRATURE.last(&impulse) > RESOLVED * sums[0];
         if is_rough {
@@ -810,7 +842,7 @@ impl OngoingImpact<'_> {
             let mut sum = 0.0;
             for (k, term) in series.iter_mut().enumerate().rev() {
                 let factor = (2 * k + 1) as f64;
-                let v = (*term - factor * sum) / (power + k as f64);
+                let v = (*term - factor * sum) * inverse[k];
                 sum += v;
                 *term = v / factor;
             }
@@ -823,9 +855,13 @@ impl OngoingImpact<'_> {
         Some(gain)
     }
 
-    /// Returns whether places can be located in a panel: but for rounding errors they can in a short one.
+    /// Returns whether an event can be located in a panel to rounding: where much of it is left until then, and the functions are good to
+    /// rounding, which but for rounding errors they are in a short panel.
     #[inline(always)]
-    fn is_resolved(&self, sector: &Sector, panel: &Panel) -> bool {
+    fn is_resolved(&self, sector: &Sector, panel: &Panel, gain: &Gain) -> bool {
+        if panel.at > 0.0 && self.now.is_almost_over(gain) {
+            return false;
+        }
         let mut density = panel.parts[0];
         if self.now.hypothesis == Hypothesis::Stronge {
             density = panel.work(self.now.speed);
@@ -840,7 +876,7 @@ impl OngoingImpact<'_> {
     #[inline(always)]
     fn gain(&self, sector: &Sector, panel: &Panel, weights: &Nodal) -> Gain {
         let rest = each(|j| weights[j] - panel.past[j]);
-        let sums = panel.parts.each_ref().map(|part| dot(&rest, part));
+        let sums = Sector::sums(&rest, &panel.parts);
         let mut gain = self.gain_from(sector, sums);
         if self.now.hypothesis == Hypothesis::Stronge {
             gain.work = dot(&rest, &panel.work(self.now.speed)) / self.axes.rate;
@@ -868,7 +904,7 @@ impl OngoingImpact<'_> {
         let mut end = 1.0;
         if !self.now.compressing && self.now.speed + rise < 0.0 {
             // Where it would be pressed together again, unless it is over by then.
-            end = panel.located(&panel.rise, -self.now.speed, 1.0);
+            end = panel.located_speed(-self.now.speed, 1.0);
             let weights = QUADRATURE.until(end);
             let mut gain = self.gain(sector, panel, &weights);
             gain.speed = -self.now.speed;
@@ -880,7 +916,7 @@ impl OngoingImpact<'_> {
         }
         let rate = self.axes.rate;
         let t = if self.now.compressing {
-            panel.located(&panel.rise, self.now.wanted_speed() - self.now.speed, end)
+            panel.located_speed(self.now.wanted_speed() - self.now.speed, end)
         } else if self.now.hypothesis == Hypothesis::Stronge {
             panel.located(&panel.work(self.now.speed), self.now.missing() * rate, end)
         } else {
