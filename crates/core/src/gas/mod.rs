@@ -112,8 +112,9 @@ pub struct Gas<'a> {
     pub seed: u64,
 }
 
-/// The rotation of a particle: attitude of the principal axes and ω in them, and the time up to which it has turned.
+/// The rotation of a particle: attitude of the principal axes and ω in them, and the time up to which it has turned. It is one line of the caches.
 #[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
 struct ParticleRotation {
     attitude: Quaternion,
     spin: Vector,
@@ -244,9 +245,14 @@ struct Batch<'a> {
     number: usize,
     /// By themselves: most candidates are refused, for which nothing else is asked.
     velocities: Vec<Vector>,
+    /// No less than the speed of each over the majorant of u, or infinite while it takes part in an encounter that is not followed yet. They stay in the
+    /// caches, and most candidates are refused by them alone.
+    bounds: Vec<f32>,
     rotations: Vec<ParticleRotation>,
     /// The time up to which each has been heated, if they are.
     heated: Vec<f64>,
+    /// True if contacts turn nothing.
+    smooth: bool,
     /// The number behind the last particle of each kind.
     ends: Vec<usize>,
     clock: f64,
@@ -254,10 +260,9 @@ struct Batch<'a> {
     past: f64,
     exponent: i32,
     whole: Whole,
-    /// Candidates so far, and a row of [`AHEAD`] of which the next is one, with the relative speeds of those that are to come.
+    /// Candidates so far, and a row of [`AHEAD`] of which the next is one.
     candidates: u64,
     ahead: Vec<Candidate>,
-    speeds: Vec<f64>,
     /// Other draws since the last candidate.
     drawn: u32,
     /// The majorant of u, the time until which it holds, and candidates since it was found.
@@ -268,10 +273,9 @@ struct Batch<'a> {
     slowest: f64,
     /// Looks so far.
     rows: Vec<f64>,
-    /// Encounters that are not followed yet, for each two kinds, their number, and a bit for each particle that takes part.
+    /// Encounters that are not followed yet, for each two kinds, and their number.
     waiting: Vec<PendingEncounters>,
     waits: usize,
-    taken: Vec<u64>,
 }
 
 /// Encounters of two kinds that are followed together: each two particles, the number of the candidate, and the time.
@@ -288,6 +292,8 @@ struct Candidate {
     chance: f64,
 }
 
+/// What is more than the rounding of a bound and of the sum of two.
+const ROUNDED: f32 = 1.0 + 8.0 * f32::EPSILON;
 /// Candidates that are drawn at once: what they need of memory is fetched at once, too.
 const AHEAD: u64 = 64;
 /// Most encounters that wait to be followed together.
@@ -352,7 +358,9 @@ impl<'a> Batch<'a> {
             number,
             velocities,
             rotations,
+            bounds: memory::zeros("speeds of a gas", count)?,
             heated: memory::zeros("times of heating", heated)?,
+            smooth: gas.kinds.iter().all(|kind| kind.turned == [false; 3]),
             ends,
             clock: 0.0,
             past: 0.0,
@@ -360,7 +368,6 @@ impl<'a> Batch<'a> {
             whole: Whole::default(),
             candidates: 0,
             ahead: Vec::new(),
-            speeds: Vec::new(),
             drawn: 0,
             fastest: 0.0,
             until: 0.0,
@@ -369,7 +376,6 @@ impl<'a> Batch<'a> {
             rows: memory::empty("looks at a gas", (gas.samples + 1) * gas.width())?,
             waiting,
             waits: 0,
-            taken: memory::zeros("particles of a gas", count.div_ceil(64))?,
         })
     }
 
@@ -393,9 +399,9 @@ impl<'a> Batch<'a> {
         (self.number as u64) << 48 | candidate
     }
 
-    /// The next candidate, and its place in the row.
+    /// The next candidate.
     #[inline(always)]
-    fn next(&mut self) -> (Candidate, usize) {
+    fn next(&mut self) -> Candidate {
         let place = (self.candidates % AHEAD) as usize;
         if place == 0 || self.ahead.is_empty() {
             let mut numbers = [(0.0, 0.0); AHEAD as usize];
@@ -406,25 +412,46 @@ impl<'a> Batch<'a> {
             self.ahead.clear();
             for (which, chance) in numbers {
                 let place = (which * pairs) as usize;
-                let (i, j) = (place / others, place % others);
+                // Sooner divided than a whole number, and exact below 2⁵³.
+                let i = (place as f64 / others as f64) as usize;
+                let i = if i * others > place { i - 1 } else { i };
+                let j = place - i * others;
                 let pair = [i, if j < i { j } else { j + 1 }];
                 self.ahead.push(Candidate { pair, chance });
             }
-            self.approach();
+            self.fetch();
         }
         (self.candidates, self.drawn) = (self.candidates + 1, 0);
-        (self.ahead[place], place)
+        self.ahead[place]
     }
 
-    /// Finds the relative speeds of the candidates in the row.
+    /// Asks for all that a row may need of memory at once.
     #[inline(always)]
-    fn approach(&mut self) {
-        self.speeds.clear();
-        for candidate in &self.ahead {
-            let [i, j] = candidate.pair;
-            let u = self.velocities[i] - self.velocities[j];
-            self.speeds.push(u.norm());
+    fn fetch(&self) {
+        let mut sum = 0.0;
+        for &Candidate { pair, chance } in &self.ahead {
+            if self.may_meet(pair, chance) {
+                for i in pair {
+                    sum += self.velocities[i].x;
+                    if !self.smooth {
+                        sum += self.rotations[i].time;
+                    }
+                }
+            }
         }
+        std::hint::black_box(sum);
+    }
+
+    /// False if the relative speed of two particles is certainly less than this part of its majorant.
+    #[inline(always)]
+    fn may_meet(&self, [i, j]: [usize; 2], part: f64) -> bool {
+        f64::from(self.bounds[i] + self.bounds[j]) > part || self.gas.heating > 0.0
+    }
+
+    /// Finds the bound of a particle.
+    #[inline(always)]
+    fn bound(&mut self, i: usize) {
+        self.bounds[i] = (self.velocities[i].norm() / self.fastest) as f32 * ROUNDED;
     }
 
     /// Others, for its encounter and for noise.
@@ -454,6 +481,8 @@ impl<'a> Batch<'a> {
             .fold(0.0, f64::max);
         let area = PI * (2.0 * reach) * (2.0 * reach);
         let pairs = count as f64 * (count - 1) as f64;
+        // n/N is 1/V, and half of the ordered pairs are the pairs.
+        let between = 2.0 / (gas.density / count as f64 * pairs * area);
         let lightest = gas.kinds.iter().map(|kind| kind.body.inverse_mass);
         let noise = gas.noise(lightest.fold(0.0, f64::max));
         if self.rows.is_empty() {
@@ -477,23 +506,27 @@ impl<'a> Batch<'a> {
                     self.until = self.clock + deviation * deviation / noise;
                 }
                 self.since = 0;
-                self.approach();
+                for i in 0..count {
+                    self.bound(i);
+                }
             }
             self.since += 1;
-            // n/N is 1/V, and half of the ordered pairs are the pairs.
-            self.clock += 2.0 / (gas.density / count as f64 * pairs * area * self.fastest);
-            let (Candidate { pair, chance }, place) = self.next();
+            self.clock += between / self.fastest;
+            let Candidate { pair, chance } = self.next();
+            if !self.may_meet(pair, chance) {
+                continue;
+            }
             let [i, j] = pair;
-            if self.is_taken(i) || self.is_taken(j) {
+            if self.bounds[i] == f32::INFINITY || self.bounds[j] == f32::INFINITY {
                 self.follow(&mut followers, law)?;
             }
             if gas.heating > 0.0 {
                 self.heat(i);
                 self.heat(j);
-                self.speeds[place] = (self.velocities[i] - self.velocities[j]).norm();
             }
-            let speed = self.speeds[place];
-            let bodies = [self.kind(i).body, self.kind(j).body];
+            let speed = (self.velocities[i] - self.velocities[j]).norm();
+            let kinds = [self.order(i), self.order(j)];
+            let bodies = [gas.kinds[kinds[0]].body, gas.kinds[kinds[1]].body];
             let both = bodies[0].reach + bodies[1].reach;
             let share = speed / self.fastest * (both * both / (4.0 * reach * reach));
             if share > 1.0 {
@@ -502,7 +535,12 @@ impl<'a> Batch<'a> {
             if chance >= share {
                 continue;
             }
-            self.meet(pair, bodies, both)?;
+            let follower = &followers[kinds[0] * gas.kinds.len() + kinds[1]];
+            if follower.smooth_balls() {
+                self.touch(pair, bodies, follower);
+            } else {
+                self.meet(pair, kinds, bodies, both)?;
+            }
             // Not more than may be followed before the next look.
             let left = each * looks as f64 - self.whole.collisions;
             if self.waits == TOGETHER || self.waits as f64 >= left {
@@ -633,24 +671,64 @@ impl<'a> Batch<'a> {
             };
         }
         self.heated.copy_from_slice(heated);
+        for i in 0..self.velocities.len() {
+            self.bound(i);
+        }
     }
 
-    /// True if a particle takes part in an encounter that is not followed yet.
+    /// The relative speed of two particles, and the direction from the second to the first where they come within reach, on a line that is drawn.
     #[inline(always)]
-    fn is_taken(&self, particle: usize) -> bool {
-        self.taken[particle / 64] >> (particle % 64) & 1 == 1
-    }
-
-    /// Lets two particles meet at the next [`Self::follow`].
-    #[inline(always)]
-    fn meet(&mut self, pair: [usize; 2], bodies: [&Partner; 2], reach: f64) -> Result<(), Error> {
+    fn line(&mut self, pair: [usize; 2]) -> (f64, Vector) {
         let u = self.velocities[pair[0]] - self.velocities[pair[1]];
         let speed = u.norm();
         let direction = u / speed;
         let (square, around) = self.draw();
-        let apart = approach(direction, direction.across(), square.sqrt(), around) * reach;
+        let apart = approach(direction, direction.across(), square.sqrt(), around);
+        (speed, apart)
+    }
+
+    /// Lets two smooth balls touch, which they do where they come within reach of each other.
+    #[inline(always)]
+    fn touch(&mut self, pair: [usize; 2], bodies: [&Partner; 2], follower: &Follower<'_, '_>) {
+        let (_, normal) = self.line(pair);
+        let before = [self.velocities[pair[0]], self.velocities[pair[1]]];
+        let number = self.number(self.candidates - 1);
+        let after = follower.touch(before, normal, (self.gas.seed, number));
+        self.whole.steps += 2.0;
+        self.whole.contacts += 1.0;
+        let (mut had, mut have) = (0.0, 0.0);
+        for k in 0..2 {
+            had += bodies[k].translational_energy(before[k]);
+            have += bodies[k].translational_energy(after[k]);
+            self.velocities[pair[k]] = after[k];
+            self.bound(pair[k]);
+        }
+        self.count(had, have);
+    }
+
+    /// Counts an encounter with contact, and the energy that it creates.
+    #[inline(always)]
+    fn count(&mut self, before: f64, after: f64) {
+        self.whole.attempts += 1.0;
+        self.whole.collisions += 1.0;
+        if after > before * (1.0 + CREATED) {
+            self.whole.creating += 1.0;
+            self.whole.created += (after - before) * 2f64.powi(-2 * self.exponent);
+        }
+    }
+
+    /// Lets two particles meet at the next [`Self::follow`].
+    #[inline(always)]
+    fn meet(
+        &mut self,
+        pair: [usize; 2],
+        kinds: [usize; 2],
+        bodies: [&Partner; 2],
+        reach: f64,
+    ) -> Result<(), Error> {
+        let (speed, apart) = self.line(pair);
         let mut states = [
-            self.free(pair[0], apart),
+            self.free(pair[0], apart * reach),
             self.free(pair[1], Vector::default()),
         ];
         let (mut spins, mut passed): (f64, _) = (0.0, [0.0; 2]);
@@ -667,16 +745,15 @@ impl<'a> Batch<'a> {
                 Phase::Uniform => self.draw().0 * TURNS * TAU / spin,
             };
         }
-        let balls = bodies.iter().all(|body| body.is_ball());
+        let balls = bodies[0].is_ball() && bodies[1].is_ball();
         if spins > if balls { LOST_SPIN } else { FASTEST_SPIN } * speed {
             return Err(self.too_hot());
         }
-        let kinds = pair.map(|i| self.order(i));
         let waiting = &mut self.waiting[kinds[0] * self.ends.len() + kinds[1]];
         waiting.pairs.push((pair, self.candidates - 1, self.clock));
         waiting.approaches.push(Approach { states, passed });
         for i in pair {
-            self.taken[i / 64] |= 1 << (i % 64);
+            self.bounds[i] = f32::INFINITY;
         }
         self.waits += 1;
         Ok(())
@@ -704,7 +781,7 @@ impl<'a> Batch<'a> {
                     }
                 }
                 for i in pair {
-                    self.taken[i / 64] &= !(1 << (i % 64));
+                    self.bound(i);
                 }
             }
             pairs.clear();
@@ -712,7 +789,6 @@ impl<'a> Batch<'a> {
             self.waiting[i] = waiting;
         }
         self.waits = 0;
-        self.approach();
         Ok(())
     }
 
@@ -725,12 +801,11 @@ impl<'a> Batch<'a> {
         outcome: &Outcome<FreeBody>,
         time: f64,
     ) {
-        self.whole.attempts += 1.0;
         self.whole.steps += outcome.steps as f64;
         if outcome.contacts == 0 {
+            self.whole.attempts += 1.0;
             return;
         }
-        self.whole.collisions += 1.0;
         self.whole.contacts += outcome.contacts as f64;
         if outcome.ending == Ending::Collapse {
             self.whole.collapses += 1.0;
@@ -740,11 +815,7 @@ impl<'a> Batch<'a> {
             let [one, two] = states;
             one.energy(bodies[0]) + two.energy(bodies[1])
         };
-        let (before, after) = (energy(&approach.states), energy(&outcome.states));
-        if after > before * (1.0 + CREATED) {
-            self.whole.creating += 1.0;
-            self.whole.created += (after - before) * 2f64.powi(-2 * self.exponent);
-        }
+        self.count(energy(&approach.states), energy(&outcome.states));
         for (i, (state, before)) in pair
             .into_iter()
             .zip(outcome.states.iter().zip(&approach.states))

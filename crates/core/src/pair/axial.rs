@@ -92,6 +92,12 @@ impl<'a, 'b> AxialPair<'a, 'b> {
         })
     }
 
+    /// True for two balls about their centres.
+    #[inline(always)]
+    pub fn is_of_spheres(&self) -> bool {
+        self.surfaces == Surfaces::Spheres
+    }
+
     /// The two parts of spheroids.
     #[inline(always)]
     fn parts(&self) -> Option<RoundParts<'_>> {

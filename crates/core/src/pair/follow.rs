@@ -4,8 +4,10 @@ use super::axial::{AxialEncounters, AxialPair};
 use super::encounter::{Chance, End, Following, OnHit};
 use super::partner::{Approach, Partner};
 use crate::contact::Between;
-use crate::law::Law;
-use crate::simd::Level;
+use crate::law::{Frictionless, Law, scattered};
+use crate::math::Vector;
+use crate::random::of_impact;
+use crate::simd::{Level, one as pack};
 use std::iter::Flatten;
 use std::slice::Iter;
 
@@ -29,6 +31,35 @@ impl<'a, 'b> Follower<'a, 'b> {
             between: vec![Between::default(); bodies[0].pieces.len() * bodies[1].pieces.len()],
             ends: Vec::new(),
         }
+    }
+
+    /// True for two smooth balls, of which rotation means nothing to the other.
+    #[inline(always)]
+    pub fn smooth_balls(&self) -> bool {
+        self.axial.as_ref().is_some_and(AxialPair::is_of_spheres)
+    }
+
+    /// The velocities of smooth balls after a contact with this normal; the number, with a seed, is that of the encounter, where ε_n scatters.
+    #[inline(always)]
+    pub fn touch(
+        &self,
+        [one, two]: [Vector; 2],
+        normal: Vector,
+        (seed, number): (u64, u64),
+    ) -> [Vector; 2] {
+        let (first, second) = (self.bodies[0].inverse_mass, self.bodies[1].inverse_mass);
+        let speed = normal.dot(two - one).max(0.0);
+        let mut coefficient = pack(self.law.normal.at(speed));
+        if self.law.deviation > 0.0 {
+            coefficient = scattered(
+                coefficient,
+                self.law.deviation,
+                pack(of_impact(seed, number, 0)),
+            );
+        }
+        let size = Frictionless::impulse(coefficient, pack(speed), pack(first + second));
+        let impulse = normal * size.as_slice()[0];
+        [impulse.mul_add(first, one), impulse.mul_add(-second, two)]
     }
 
     /// Follows some of them; `chance` gives a uniform number in (0, 1) for a contact of one of them where ε_n scatters, and `hit` receives their contacts, if
@@ -76,5 +107,59 @@ impl<'a, 'b> Follower<'a, 'b> {
             }));
         }
         self.ends.iter().flatten()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Quaternion;
+    use crate::pair::{PairState, encounter};
+    use crate::random::of_candidate;
+    use crate::{AnyBody, Dumbbell, Material, Scattered};
+
+    /// The velocities that are known at once are those at the end of the encounter, also where the coefficient scatters.
+    #[test]
+    fn smooth_balls_touch_as_they_do_in_an_encounter() {
+        let ball = |radius, density| {
+            let ball = Dumbbell::new(radius, 0.0, density).unwrap();
+            Partner::new("body", AnyBody::from(ball)).unwrap()
+        };
+        let bodies = [&ball(1.0, 1.0), &ball(0.5, 3.0)];
+        let steady = Material::from(0.7);
+        let scattered = Scattered::new(Material::from(0.7), 0.1).unwrap();
+        for material in [steady, Material::Scattered(scattered)] {
+            let law = Law::of(&material, Frictionless.into());
+            let follower = Follower::new(bodies, &law, Level::best());
+            assert!(follower.smooth_balls());
+            for number in 0..200 {
+                let vector = |draw| {
+                    let ((x, y), (z, _)) = (
+                        of_candidate(7, number, draw),
+                        of_candidate(7, number, draw + 1),
+                    );
+                    Vector::new(x, y, z) - Vector::new(0.5, 0.5, 0.5)
+                };
+                let (normal, velocities) = (vector(1), [vector(3), vector(5)]);
+                let u = velocities[0] - velocities[1];
+                let normal = normal * (-normal.dot(u).signum() / normal.norm());
+                // A time of 2 before they touch.
+                let places = [normal * 1.5 - u * 2.0, Vector::default()];
+                let state = |i: usize| PairState {
+                    position: places[i],
+                    velocity: velocities[i],
+                    attitude: Quaternion::IDENTITY,
+                    spin: Vector::default(),
+                };
+                let chance = |contact| of_impact(7, number, contact);
+                let states = [state(0), state(1)];
+                let end = encounter(bodies, &law, states, chance, |_| ()).unwrap();
+                assert_eq!(end.contacts, 1);
+                let after = follower.touch(velocities, normal, (7, number));
+                for (state, velocity) in end.states.iter().zip(after) {
+                    assert!((state.velocity - velocity).norm() < 1e-13);
+                }
+            }
+        }
     }
 }
