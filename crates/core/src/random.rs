@@ -2,7 +2,9 @@
 //!
 //! J. K. Salmon, M. A. Moraes, R. O. Dror and D. E. Shaw, *Parallel random numbers: as easy as 1, 2, 3*, Proc. SC11 (2011).
 
-use rand_philox::{Philox, philox4x32_10};
+use crate::simd::Level;
+use pulp::{Simd, WithSimd};
+use rand_philox::philox4x32_10;
 
 /// A uniform number in [0, 1) with 53 random bits: Philox4x32-10, key = seed, counter = (particle, draw).
 pub fn uniform(seed: u64, particle: u64, draw: u32) -> f64 {
@@ -59,17 +61,42 @@ pub fn of_candidate(seed: u64, candidate: u64, draw: u32) -> (f64, f64) {
 }
 
 /// Two numbers each for counters that begin with successive numbers and end with the same two words.
-fn in_row(seed: u64, first: u64, [third, last]: [u32; 2], numbers: &mut [(f64, f64)]) {
-    const BLOCK: usize = 64;
-    let key = halves(seed);
-    let rest = u128::from(third) << 64 | u128::from(last) << 96;
-    let mut words = [0; 4 * BLOCK];
-    for (i, some) in numbers.chunks_mut(BLOCK).enumerate() {
-        let counter = u128::from(first + (i * BLOCK) as u64) | rest;
-        let words = &mut words[..4 * some.len()];
-        Philox::new([key.0, key.1], counter).fill_u32(words);
-        for (pair, &[a, b, c, d]) in some.iter_mut().zip(words.as_chunks().0) {
-            *pair = (unit(a, b), unit(c, d));
+fn in_row(seed: u64, first: u64, rest: [u32; 2], numbers: &mut [(f64, f64)]) {
+    Level::best().run(Row {
+        seed,
+        first,
+        rest,
+        numbers,
+    });
+}
+
+/// These numbers, for many counters at once.
+struct Row<'a> {
+    seed: u64,
+    first: u64,
+    rest: [u32; 2],
+    numbers: &'a mut [(f64, f64)],
+}
+
+impl WithSimd for Row<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        const BLOCK: usize = 64;
+        let (key, [third, last]) = (halves(self.seed), self.rest);
+        let mut words = [[0; 4]; BLOCK];
+        let mut first = self.first;
+        for some in self.numbers.chunks_mut(BLOCK) {
+            // By itself, this loop is compiled for vectors.
+            for (words, number) in words[..some.len()].iter_mut().zip(first..) {
+                let (low, high) = halves(number);
+                *words = philox4x32_10([low, high, third, last], [key.0, key.1]);
+            }
+            for (pair, &[a, b, c, d]) in some.iter_mut().zip(&words) {
+                *pair = (unit(a, b), unit(c, d));
+            }
+            first += BLOCK as u64;
         }
     }
 }
