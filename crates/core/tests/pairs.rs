@@ -1,13 +1,14 @@
 //! Encounters of two bodies in free flight.
 
+use rand_philox::philox4x32_10;
 use restitution_core::pair::{
     ENCOUNTER, Encounters, Ending, Hit, Meeting, PairState, PairTable, PairVariable, Partner,
     Trouble, encounter,
 };
 use restitution_core::{
     AnyBody, Coulomb, Dumbbell, Fault, Frictionless, Hypothesis, ImpulseFunction, Law, Level,
-    LoadedSphere, Matter, Monitor, Quaternion, Resources, Rigid, RigidBall, Spheroid,
-    TangentialRestitution, Vector, Viscoelastic,
+    LoadedSphere, Material, Matter, Monitor, Quaternion, Resources, Rigid, RigidBall, Scattered,
+    Spheroid, TangentialRestitution, Vector, Viscoelastic,
 };
 
 /// Of mass 1 and R = 1.
@@ -378,7 +379,8 @@ fn an_impulse_that_is_no_number_ends_an_encounter() {
 }
 
 /// Balls on an axis and spheroids without friction, which are followed in lanes, end as those that are followed one by one: dumbbells of any aspect ratio, a sphere
-/// whose centre of mass is not at its centre, spheres, long and flat spheroids; with coefficients that depend on the speed, and where contacts accumulate.
+/// whose centre of mass is not at its centre, spheres, long and flat spheroids; with coefficients that depend on the speed or scatter, and where contacts
+/// accumulate.
 #[test]
 fn lanes_follow_what_one_by_one_follows() {
     let loaded = LoadedSphere::new(0.7, 0.3, 0.4, 0.3).unwrap();
@@ -393,10 +395,12 @@ fn lanes_follow_what_one_by_one_follows() {
         spheroid([1.5, 0.5]),
     ];
     let material = Viscoelastic::new(1e6, 0.3, 1e-3, 1e3, 0.01).unwrap();
+    let scattered = Material::Scattered(Scattered::new(0.8.into(), 0.1).unwrap());
     let laws = [
         frictionless(1.0),
         frictionless(0.0),
         Law::new(material, Frictionless).unwrap(),
+        Law::of(&scattered, Frictionless.into()),
     ];
     for (i, one) in bodies.iter().enumerate() {
         for two in &bodies[i..] {
@@ -404,13 +408,20 @@ fn lanes_follow_what_one_by_one_follows() {
                 let run = drawn([one, two], 150);
                 let table = record(&run, law, 1, Level::best());
                 let mut hits = table.hits.chunks(12);
-                for row in &rows(&table) {
+                for (number, row) in rows(&table).iter().enumerate() {
+                    // A uniform number in (0, 1) with 53 random bits, of counter (encounter, contact, 2).
+                    let chance = |contact: u64| {
+                        let counter = [number as u32, 0, contact as u32, 2];
+                        let [low, high, ..] = philox4x32_10(counter, [run.seed as u32, 0]);
+                        let bits = u64::from(high) << 21 | u64::from(low) >> 11;
+                        (bits as f64 + 0.5) * 2.0_f64.powi(-53)
+                    };
                     let mut own = Vec::new();
                     let add = |hit: &Hit| {
                         own.truncate(hit.number as usize);
                         own.push(*hit);
                     };
-                    let found = encounter([one, two], law, before(row), |_| 0.5, add).unwrap();
+                    let found = encounter([one, two], law, before(row), chance, add).unwrap();
                     assert_eq!(row[0], found.contacts as f64);
                     assert_eq!(row[1], f64::from(found.ending as u8));
                     // What a search leaves grows with each contact that follows.

@@ -156,8 +156,10 @@ mod tests {
                 let end = encounter(bodies, &law, states, chance, |_| ()).unwrap();
                 assert_eq!(end.contacts, 1);
                 let after = follower.touch(velocities, normal, (7, number));
+                // Rounding moves the place where balls that graze touch.
+                let grazing = u.norm() / normal.dot(u).abs();
                 for (state, velocity) in end.states.iter().zip(after) {
-                    assert!((state.velocity - velocity).norm() < 1e-13);
+                    assert!((state.velocity - velocity).norm() < 1e-14 * grazing);
                 }
             }
         }
