@@ -243,7 +243,7 @@ impl Gas<'_> {
 struct Batch<'a> {
     gas: &'a Gas<'a>,
     number: usize,
-    /// By themselves: most candidates are refused, for which nothing else is asked.
+    /// By themselves: many candidates are refused for which nothing else is asked.
     velocities: Vec<Vector>,
     /// No less than the speed of each over the majorant of u, or infinite while it takes part in an encounter that is not followed yet. They stay in the
     /// caches, and most candidates are refused by them alone.
@@ -251,8 +251,6 @@ struct Batch<'a> {
     rotations: Vec<ParticleRotation>,
     /// The time up to which each has been heated, if they are.
     heated: Vec<f64>,
-    /// True if contacts turn nothing.
-    smooth: bool,
     /// The number behind the last particle of each kind.
     ends: Vec<usize>,
     clock: f64,
@@ -360,7 +358,6 @@ impl<'a> Batch<'a> {
             rotations,
             bounds: memory::zeros("speeds of a gas", count)?,
             heated: memory::zeros("times of heating", heated)?,
-            smooth: gas.kinds.iter().all(|kind| kind.turned == [false; 3]),
             ends,
             clock: 0.0,
             past: 0.0,
@@ -428,12 +425,13 @@ impl<'a> Batch<'a> {
     /// Asks for all that a row may need of memory at once.
     #[inline(always)]
     fn fetch(&self) {
+        let turns = self.gas.kinds.iter().any(|kind| kind.turned != [false; 3]);
         let mut sum = 0.0;
         for &Candidate { pair, chance } in &self.ahead {
             if self.may_meet(pair, chance) {
                 for i in pair {
                     sum += self.velocities[i].x;
-                    if !self.smooth {
+                    if turns {
                         sum += self.rotations[i].time;
                     }
                 }
@@ -525,8 +523,8 @@ impl<'a> Batch<'a> {
                 self.heat(j);
             }
             let speed = (self.velocities[i] - self.velocities[j]).norm();
-            let kinds = [self.order(i), self.order(j)];
-            let bodies = [gas.kinds[kinds[0]].body, gas.kinds[kinds[1]].body];
+            let [one, two] = [self.order(i), self.order(j)];
+            let bodies = [gas.kinds[one].body, gas.kinds[two].body];
             let both = bodies[0].reach + bodies[1].reach;
             let share = speed / self.fastest * (both * both / (4.0 * reach * reach));
             if share > 1.0 {
@@ -535,11 +533,11 @@ impl<'a> Batch<'a> {
             if chance >= share {
                 continue;
             }
-            let follower = &followers[kinds[0] * gas.kinds.len() + kinds[1]];
-            if follower.smooth_balls() {
-                self.touch(pair, bodies, follower);
+            let kinds = one * gas.kinds.len() + two;
+            if followers[kinds].smooth_balls() {
+                self.touch(pair, bodies, &followers[kinds]);
             } else {
-                self.meet(pair, kinds, bodies, both)?;
+                self.meet(pair, bodies, both, kinds)?;
             }
             // Not more than may be followed before the next look.
             let left = each * looks as f64 - self.whole.collisions;
@@ -694,7 +692,8 @@ impl<'a> Batch<'a> {
         let before = [self.velocities[pair[0]], self.velocities[pair[1]]];
         let number = self.number(self.candidates - 1);
         let after = follower.touch(before, normal, (self.gas.seed, number));
-        self.whole.steps += 2.0;
+        self.whole.attempts += 1.0;
+        self.whole.steps += 2.0; // as those that are followed: where they touch, and where they part
         self.whole.contacts += 1.0;
         let (mut had, mut have) = (0.0, 0.0);
         for k in 0..2 {
@@ -706,10 +705,9 @@ impl<'a> Batch<'a> {
         self.count(had, have);
     }
 
-    /// Counts an encounter with contact, and the energy that it creates.
+    /// Counts a collision, an encounter with contact, and the energy that it creates.
     #[inline(always)]
     fn count(&mut self, before: f64, after: f64) {
-        self.whole.attempts += 1.0;
         self.whole.collisions += 1.0;
         if after > before * (1.0 + CREATED) {
             self.whole.creating += 1.0;
@@ -717,14 +715,14 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Lets two particles meet at the next [`Self::follow`].
+    /// Lets two particles, whose kinds together have this number, meet at the next [`Self::follow`].
     #[inline(always)]
     fn meet(
         &mut self,
         pair: [usize; 2],
-        kinds: [usize; 2],
         bodies: [&Partner; 2],
         reach: f64,
+        kinds: usize,
     ) -> Result<(), Error> {
         let (speed, apart) = self.line(pair);
         let mut states = [
@@ -749,7 +747,7 @@ impl<'a> Batch<'a> {
         if spins > if balls { LOST_SPIN } else { FASTEST_SPIN } * speed {
             return Err(self.too_hot());
         }
-        let waiting = &mut self.waiting[kinds[0] * self.ends.len() + kinds[1]];
+        let waiting = &mut self.waiting[kinds];
         waiting.pairs.push((pair, self.candidates - 1, self.clock));
         waiting.approaches.push(Approach { states, passed });
         for i in pair {
@@ -801,9 +799,9 @@ impl<'a> Batch<'a> {
         outcome: &Outcome<FreeBody>,
         time: f64,
     ) {
+        self.whole.attempts += 1.0;
         self.whole.steps += outcome.steps as f64;
         if outcome.contacts == 0 {
-            self.whole.attempts += 1.0;
             return;
         }
         self.whole.contacts += outcome.contacts as f64;

@@ -155,16 +155,22 @@ impl<'a> Law<'a> {
             velocity: Components::in_lane(velocity),
             compliance: *compliance,
         };
-        let normal = one(self.normal.at(velocity.z.abs()));
-        let normal = match chance {
-            Some(chance) => scattered(normal, self.deviation, one(chance)),
-            None => normal,
-        };
+        let normal = self.coefficient(velocity.z.abs(), chance);
         let response = self.rule.respond::<_, true>(&contact, normal);
         Ok(Answer {
             impulse: response.impulse.in_axes(),
             separation_speed: response.separation_speed.as_slice()[0],
         })
+    }
+
+    /// ε_n at a speed, where it scatters with a uniform number in (0, 1).
+    #[inline(always)]
+    pub(crate) fn coefficient(&self, speed: f64, chance: Option<f64>) -> Pack<Scalar, 1> {
+        let normal = one(self.normal.at(speed));
+        match chance {
+            Some(chance) => scattered(normal, self.deviation, one(chance)),
+            None => normal,
+        }
     }
 
     /// The law as [`Steady`], if it is the paper's with the same ε_n for all impacts.

@@ -4,7 +4,7 @@ use super::axial::{AxialEncounters, AxialPair};
 use super::encounter::{Chance, End, Following, OnHit};
 use super::partner::{Approach, Partner};
 use crate::contact::Between;
-use crate::law::{Frictionless, Law, scattered};
+use crate::law::{Frictionless, Law};
 use crate::math::Vector;
 use crate::random::of_impact;
 use crate::simd::{Level, one as pack};
@@ -49,14 +49,8 @@ impl<'a, 'b> Follower<'a, 'b> {
     ) -> [Vector; 2] {
         let (first, second) = (self.bodies[0].inverse_mass, self.bodies[1].inverse_mass);
         let speed = normal.dot(two - one).max(0.0);
-        let mut coefficient = pack(self.law.normal.at(speed));
-        if self.law.deviation > 0.0 {
-            coefficient = scattered(
-                coefficient,
-                self.law.deviation,
-                pack(of_impact(seed, number, 0)),
-            );
-        }
+        let chance = (self.law.deviation > 0.0).then(|| of_impact(seed, number, 0));
+        let coefficient = self.law.coefficient(speed, chance);
         let size = Frictionless::impulse(coefficient, pack(speed), pack(first + second));
         let impulse = normal * size.as_slice()[0];
         [impulse.mul_add(first, one), impulse.mul_add(-second, two)]

@@ -91,9 +91,8 @@ impl<S: Simd> OngoingImpacts<S> {
 }
 
 /// Contacts under way.
-#[derive(Clone, Copy)]
 struct TurningLanes<S: Simd> {
-    pub impacts: OngoingImpacts<S>,
+    impacts: OngoingImpacts<S>,
     friction: f64,
     hypothesis: Hypothesis,
     /// Vector and lane from which each has come; of lanes without one, none.
@@ -103,7 +102,7 @@ struct TurningLanes<S: Simd> {
 impl<S: Simd> TurningLanes<S> {
     /// No contact, of the law of those that are pending.
     #[inline(always)]
-    pub fn new(pending: &[Pending<S>], friction: f64, hypothesis: Hypothesis) -> Self {
+    fn new(pending: &[Pending<S>], friction: f64, hypothesis: Hypothesis) -> Self {
         let nothing = Slipping::none(pending[0].open.simd());
         Self {
             impacts: OngoingImpacts::new(&nothing, friction, hypothesis),
@@ -114,13 +113,13 @@ impl<S: Simd> TurningLanes<S> {
     }
 
     #[inline(always)]
-    pub fn is_empty(&self) -> bool {
+    fn is_empty(&self) -> bool {
         self.impacts.course.over.all()
     }
 
     /// Puts contacts that wait into free lanes.
     #[inline(always)]
-    pub fn begin(&mut self, waiting: &mut Waiting, pending: &[Pending<S>]) {
+    fn begin(&mut self, waiting: &mut Waiting, pending: &[Pending<S>]) {
         let simd = pending[0].open.simd();
         let mut fresh = Slipping::none(simd);
         let mut taken = Pack::splat(simd, 0.0);
@@ -143,7 +142,7 @@ impl<S: Simd> TurningLanes<S> {
 
     /// Answers the contacts that are over.
     #[inline(always)]
-    pub fn end(&mut self, pending: &mut [Pending<S>]) {
+    fn end(&mut self, pending: &mut [Pending<S>]) {
         let over = self.impacts.course.over;
         if !over.any() {
             return;
