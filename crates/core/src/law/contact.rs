@@ -59,6 +59,24 @@ impl<S: Simd> Contact<Pack<S, 1>> {
         }
     }
 
+    /// Puts a contact of the same body into a lane.
+    #[inline(always)]
+    pub(super) fn put(&mut self, lane: usize, contact: &Contact) {
+        let (own, k) = (&mut self.velocity, &mut self.compliance);
+        let (velocity, other) = (contact.velocity, contact.compliance);
+        k.inertia = other.inertia;
+        for (to, from) in [
+            (&mut own.normal, velocity.normal),
+            (&mut own.along, velocity.along),
+            (&mut own.across, velocity.across),
+            (&mut k.arm_normal, other.arm_normal),
+            (&mut k.arm_along, other.arm_along),
+            (&mut k.ww, other.ww),
+        ] {
+            to.as_mut_slice()[lane] = from;
+        }
+    }
+
     /// No contact.
     #[inline(always)]
     pub fn none(simd: S) -> Self {

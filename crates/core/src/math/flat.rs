@@ -29,3 +29,14 @@ pub(crate) fn rotate(axis: [f64; 2], v: [f64; 2]) -> [f64; 2] {
 pub(crate) fn rotate_back(axis: [f64; 2], v: [f64; 2]) -> [f64; 2] {
     rotate([axis[0], -axis[1]], v)
 }
+
+/// cot(δ/2), δ the angle from one direction to another, in turns to this side between 0 and 1.
+#[inline]
+pub(crate) fn half_cotangent(from: [f64; 2], to: [f64; 2], side: f64) -> f64 {
+    let (sine, cosine) = (side * cross(from, to), scalar(from, to));
+    if cosine >= 0.0 {
+        (1.0 + cosine) / sine
+    } else {
+        sine / (1.0 - cosine)
+    }
+}

@@ -1,7 +1,8 @@
-//! Vectors, of one particle or of one in each lane, symmetric matrices, rotations, zeros of polynomials, and functions by their values at the
-//! nodes of a quadrature.
+//! Vectors, of one particle or of one in each lane, symmetric matrices, rotations, zeros of polynomials, the normal distribution, and
+//! functions by their values at the nodes of a quadrature.
 
 pub(crate) mod flat;
+pub(crate) mod gaussian;
 pub(crate) mod nodal;
 mod quaternion;
 pub(crate) mod roots;

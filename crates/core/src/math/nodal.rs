@@ -22,7 +22,7 @@ pub(crate) struct Quadrature {
     integral_of: [Nodal; NODES],
     /// Row k, column j: (2k + 1) w_j P_k(t_j), which turns values into coefficients of Legendre's series; and transposed.
     pub legendre: [Nodal; NODES],
-    pub legendre_of: [Nodal; NODES],
+    legendre_of: [Nodal; NODES],
 }
 
 pub(crate) static QUADRATURE: Quadrature = Quadrature::new();
@@ -97,6 +97,22 @@ impl Quadrature {
     #[inline(always)]
     pub fn until(&self, t: f64) -> Nodal {
         rows(&self.integral_of, &self.interpolation(t))
+    }
+
+    /// The integral of s^(a−1)F(s) from 0 to t over t^a, a > 0: V with tV′ + aV = F, which is a back-substitution for the coefficients of
+    /// Legendre's series.
+    #[inline(always)]
+    pub fn divided(&self, values: &Nodal, power: f64) -> Nodal {
+        let inverse = each(|k| 1.0 / (power + k as f64));
+        let mut series = rows(&self.legendre_of, values);
+        let mut sum = 0.0;
+        for (k, term) in series.iter_mut().enumerate().rev() {
+            let factor = (2 * k + 1) as f64;
+            let v = (*term - factor * sum) * inverse[k];
+            sum += v;
+            *term = v / factor;
+        }
+        rows(&self.legendre, &series)
     }
 
     /// The largest of the last two coefficients of Legendre's series.

@@ -249,6 +249,11 @@ pub(crate) fn plain_exp(x: f64) -> f64 {
     f64::from_bits(sum.to_bits().wrapping_add(shifted.to_bits() << 52))
 }
 
+/// The largest power of two that is not larger than a positive number.
+pub(crate) fn power_of_two(x: f64) -> f64 {
+    f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & (0x7ff << 52))
+}
+
 /// ln x of a positive number, to within 0.06, from its representation.
 pub(crate) fn rough_ln(x: f64) -> f64 {
     ((x.to_bits() >> 20) as f64 / (1_u64 << 32) as f64 - 1022.957) * LN_2

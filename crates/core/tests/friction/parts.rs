@@ -17,29 +17,23 @@ struct Case {
 }
 
 impl Case {
-    /// At a slip of size `slip` that is measured in units of the contact velocity, `normal` its part along **n**.
-    pub fn contact(&self, slip: f64, normal: f64) -> Slipping<Scalar, 1> {
-        Slipping {
-            speed: one(normal),
-            along: one(slip * self.direction.cos()),
-            across: one(slip * self.direction.sin()),
-            nn: one(self.nn),
-            nu: one(self.nu),
-            uu: one(self.uu),
-            ww: one(self.ww),
-            restitution: one(0.5),
-        }
-    }
-
-    /// The impact of [`Self::contact`].
+    /// The impact at a slip of size `slip` that is measured in units of the contact velocity, `normal` its part along **n**.
     pub fn impacts(
         &self,
         slip: f64,
         normal: f64,
         hypothesis: Hypothesis,
     ) -> OngoingImpacts<Scalar> {
-        let contact = self.contact(slip, normal);
-        let mut impacts = OngoingImpacts::new(&contact, self.friction, hypothesis);
+        let mut contact = Contact::none(Scalar::new());
+        contact.velocity = Components {
+            normal: one(-normal),
+            along: one(slip * self.direction.cos()),
+            across: one(slip * self.direction.sin()),
+        };
+        let rule = Coulomb::new(self.friction, hypothesis).unwrap();
+        let mut impacts = OngoingImpacts::new(&contact, one(0.5), &rule);
+        let response = [self.nn, self.nu, self.uu, self.ww].map(one);
+        impacts.rates = Rates::new(response, self.friction);
         impacts.course.direction();
         impacts
     }
@@ -57,7 +51,7 @@ struct SlipState {
 }
 
 impl SlipState {
-    pub fn of(at: &Course<Scalar, 1>) -> Self {
+    pub fn of(at: &Course<Scalar>) -> Self {
         Self {
             u: value(at.u),
             w: value(at.w),
@@ -77,7 +71,7 @@ impl SlipState {
     }
 
     /// d/dθ by Coulomb's law, dp = |**s**|(1 + y) dθ.
-    fn rate(&self, k: &Rates<Scalar, 1>) -> [f64; 5] {
+    fn rate(&self, k: &Rates<Scalar>) -> [f64; 5] {
         let (slip, mu, nu) = (self.slip(), k.friction, value(k.nu));
         let (along, across) = (-mu * self.u / slip, -mu * self.w / slip);
         let pace = slip * (1.0 + self.y());
@@ -101,7 +95,7 @@ impl SlipState {
     }
 
     /// After θ, by a thousand steps of Runge and Kutta's method.
-    pub fn after(&self, k: &Rates<Scalar, 1>, theta: f64) -> Self {
+    pub fn after(&self, k: &Rates<Scalar>, theta: f64) -> Self {
         let step = theta / 1000.0;
         let mut now = *self;
         for _ in 0..1000 {
@@ -122,7 +116,7 @@ fn value(x: Pack<Scalar, 1>) -> f64 {
 }
 
 /// Puts the end of the restitution where the impact has come to `there`, which is later than `at`.
-fn end_at(goal: &mut Goal<Scalar, 1>, at: &mut Course<Scalar, 1>, there: &SlipState) {
+fn end_at(goal: &mut Goal<Scalar>, at: &mut Course<Scalar>, there: &SlipState) {
     goal.rebound = one(there.v);
     goal.restitution = one(1.0);
     at.compression = one(0.5 * there.normal);
@@ -344,7 +338,7 @@ mod hodograph {
 mod series {
     use super::*;
 
-    fn series(terms: [f64; ORDER]) -> Polynomial<Scalar, 1> {
+    fn series(terms: [f64; ORDER]) -> Polynomial<Scalar> {
         Polynomial(terms.map(one))
     }
 
@@ -529,11 +523,7 @@ mod step {
     }
 
     /// Whether events that are behind the end of a way of Rθ = 2 count as far.
-    fn behind(
-        (rates, goal): (&Rates<Scalar, 1>, &Goal<Scalar, 1>),
-        at: &Course<Scalar, 1>,
-        share: f64,
-    ) {
+    fn behind((rates, goal): (&Rates<Scalar>, &Goal<Scalar>), at: &Course<Scalar>, share: f64) {
         let length = 2.0 / value(rates.pace(at.y));
         let path = Hodograph::new(rates, at.y);
         let end = integrate_panel((rates, &path), goal, at, one(length));
@@ -606,7 +596,7 @@ mod stop {
             };
             let impacts = case.impacts(0.5, 0.5, Hypothesis::Newton);
             let (rates, at) = (impacts.rates, impacts.course);
-            let stop: VanishingSlip<Scalar, 1> = VanishingSlip::new(&rates, &at);
+            let stop: VanishingSlip<Scalar> = VanishingSlip::new(&rates, &at);
             assert!(stop.reached.any());
             let mut there = SlipState::of(&at);
             while there.u.hypot(there.w) > 1e-12 {

@@ -21,27 +21,26 @@
 //!
 //! d ln w/dθ = D/(1 + z²), d ln ρ/d ln w = R/((1 + z²)D),
 //!
-//! and both right-hand sides are analytic in ln w as far as ±i and the zeros of D, the directions of the other two rays or, where these are complex, of none. All that
+//! and both right-hand sides are analytic in ln w as far as ±i and the zeros of D, which where they are real are the other two rays. All that
 //! an impact asks for, p, the friction, v_n and the work, is an integral of ρ times a rational function of z. A [`Panel`] is a piece of ln w
 //! with 24 nodes of Gauss's rule; ln ρ at the nodes and every integral from the panel's beginning to a place in it are those of the
 //! polynomial through the nodes, so that the end of the compression or of the restitution is a zero of a polynomial.
 //!
 //! On the way to the rest along a ray, ρ = w^a G(w) with a = R(0)/D(0) > 0 and G analytic. With V(t) the integral of s^(a−1)F(s) from 0 to
-//! t over t^a, tV′ + aV = F, which for series in Legendre's polynomials is a back-substitution ([`OngoingImpact::rest`]): one piece leads to where the
-//! slip vanishes. A slip at rest stays if |K_t⁻¹κ| ≤ μ; otherwise it leaves along the ray in the quadrant of κ. Along a ray everything
-//! is a straight line in p.
+//! t over t^a, tV′ + aV = F, which for series in Legendre's polynomials is a back-substitution: one piece leads to where the slip vanishes.
+//! A slip at rest stays if |K_t⁻¹κ| ≤ μ; else it leaves along the ray in the quadrant of κ. Along a ray everything is a straight line in p.
 //!
-//! The normal velocity, dv_n/dp = K_nn − μκ·**d**, can fall (a jam) where μ|κ| > K_nn. A panel therefore ends where dv_n/dp changes
-//! its sign, so that v_n is monotone in every piece of the path, and a contact that approaches again during the restitution is
-//! compressed again. There is no jam where the slip grows or sticks, because K is positive definite, so that each one ends.
+//! v_n, with dv_n/dp = K_nn − μκ·**d**, can fall (a jam) where μ|κ| > K_nn. A panel therefore ends where dv_n/dp changes its sign, and a
+//! contact that approaches again during the restitution is compressed again. Where the slip grows or sticks there is no jam, because K is
+//! positive definite, so that each one ends.
 
 use super::{Coulomb, Hypothesis, Sliding, phases::Gain, phases::ImpactSoFar};
 use crate::law::{Compliance, Components, Contact, Frictionless, ImpulseRule, Response};
 use crate::math::Vector;
-use crate::math::flat::{cross, norm, rotate, rotate_back, scalar};
+use crate::math::flat::{cross, half_cotangent, norm, rotate, rotate_back, scalar};
 use crate::math::nodal::{NODES, Nodal, QUADRATURE, dot, each, moments, rows};
 use crate::math::roots::{deflated, largest_root, zeros};
-use crate::simd::elementary::{ln, plain_exp as exp, rough_ln};
+use crate::simd::elementary::{ln, plain_exp as exp, power_of_two, rough_ln};
 use crate::simd::{Level, Pack, one};
 use pulp::{Scalar, Simd, WithSimd};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -112,11 +111,6 @@ impl Sliding<Scalar> for Compliance {
     }
 }
 
-/// The largest power of two that is not larger, of a positive number.
-fn power_of_two(x: f64) -> f64 {
-    f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & (0x7ff << 52))
-}
-
 /// K and μ in the principal axes of K_t.
 struct PrincipalFrame {
     /// Cosine and sine of the angle from x to the first axis.
@@ -143,13 +137,8 @@ struct SlipRates {
     growth: f64,
     /// μk_⊥.
     across: f64,
-}
-
-impl SlipRates {
     /// dh/dφ on a ray.
-    fn turn_slope(&self) -> f64 {
-        -self.growth - self.across
-    }
+    turn_slope: f64,
 }
 
 impl PrincipalFrame {
@@ -188,12 +177,21 @@ impl PrincipalFrame {
     }
 
     fn rates(&self, d: [f64; 2]) -> SlipRates {
-        let (c2, s2) = (d[0] * d[0], d[1] * d[1]);
+        let [along, across] = self.braking(d);
+        let growth = scalar(self.drive, d) - along;
         SlipRates {
             turn: cross(d, self.drive) + self.spread * d[0] * d[1],
-            growth: scalar(self.drive, d) - (self.brake[0] * c2 + self.brake[1] * s2),
-            across: self.brake[0] * s2 + self.brake[1] * c2,
+            growth,
+            across,
+            turn_slope: -growth - across,
         }
+    }
+
+    /// The components of μK_t along a direction and across.
+    fn braking(&self, d: [f64; 2]) -> [f64; 2] {
+        let squares = d.map(|x| x * x);
+        let [c2, s2] = squares;
+        [scalar(self.brake, squares), scalar(self.brake, [s2, c2])]
     }
 
     /// The tangential impulse per normal impulse of a slip in this direction.
@@ -247,7 +245,7 @@ impl PrincipalFrame {
     fn onto_ray(&self, mut d: [f64; 2]) -> [f64; 2] {
         for _ in 0..2 {
             let rates = self.rates(d);
-            let delta = -rates.turn / rates.turn_slope();
+            let delta = -rates.turn / rates.turn_slope;
             if delta.abs() < 1e-3 {
                 let turned = [d[0] - delta * d[1], d[1] + delta * d[0]];
                 let size = norm(turned);
@@ -265,29 +263,20 @@ impl PrincipalFrame {
     }
 }
 
-/// cot(δ/2), δ the angle from one direction to another, in turns to this side between 0 and 1.
-fn half_cotangent(from: [f64; 2], to: [f64; 2], side: f64) -> f64 {
-    let (sine, cosine) = (side * cross(from, to), scalar(from, to));
-    if cosine >= 0.0 {
-        (1.0 + cosine) / sine
-    } else {
-        sine / (1.0 - cosine)
-    }
-}
-
 /// The directions between a ray that attracts and the next on one side, which repels.
 struct Sector {
     ray: [f64; 2],
     side: f64,
     /// cot(δ/2) of the ray that repels.
     k: f64,
-    /// The coefficients of D in powers of z, and in those of z less `middle`, which is 0 but where two rays are about to merge.
-    turn: [f64; 3],
+    /// The coefficients of D in powers of z less `middle`, which is 0 but where two rays are about to merge.
     about: [f64; 3],
     middle: f64,
     /// The coefficients of R, and α and β.
     growth: [f64; 5],
     drive: [f64; 2],
+    /// a, d ln ρ/d ln w on the ray.
+    power: f64,
     /// The singularities in the upper half of the plane of w.
     singular: [[f64; 2]; 3],
     /// And in that of ln w, roughly.
@@ -329,9 +318,7 @@ impl Sector {
         let turn = deflated(cubic, k);
         let [alpha, beta] = rotate(ray, axes.drive);
         let beta = side * beta;
-        let (c2, s2) = (ray[0] * ray[0], ray[1] * ray[1]);
-        let along = axes.brake[0] * c2 + axes.brake[1] * s2;
-        let across = axes.brake[0] * s2 + axes.brake[1] * c2;
+        let [along, across] = axes.braking(ray);
         // w of z = x + iy.
         let place = |x: f64, y: f64| {
             let (a, b) = (1.0 - k * x, -k * y);
@@ -359,7 +346,6 @@ impl Sector {
             ray,
             side,
             k,
-            turn,
             about,
             middle,
             growth: [
@@ -370,6 +356,7 @@ impl Sector {
                 -(alpha + along),
             ],
             drive: [alpha, beta],
+            power: (alpha - along) / turn[0],
             singular,
             singular_ln: singular.map(|[x, y]| {
                 let angle = FRAC_PI_2 * y / (x.abs() + y); // to within 0.08
@@ -380,12 +367,6 @@ impl Sector {
             }),
         };
         (sector, 1.0 / (half_cotangent(ray, d, side) - k))
-    }
-
-    /// a, d ln ρ/d ln w on the ray.
-    #[inline(always)]
-    fn power(&self) -> f64 {
-        self.growth[0] / self.turn[0]
     }
 
     /// The direction at w.
@@ -574,27 +555,14 @@ impl Panel {
         each(|j| (start + self.risen[j]) * self.parts[0][j])
     }
 
-    /// The part of the panel, up to `end`, at which an integral from where the impact is has this value.
+    /// The part of the panel, up to `end`, at which an integral from where the impact is, of `density`, has this value; `whole` is that from
+    /// the panel's beginning to the nodes.
     #[inline(always)]
-    fn located(&self, density: &Nodal, gain: f64, end: f64) -> f64 {
-        self.located_on(density, &rows(&QUADRATURE.integral, density), gain, end)
-    }
-
-    /// The same for v_n.
-    #[inline(always)]
-    fn located_speed(&self, gain: f64, end: f64) -> f64 {
-        self.located_on(&self.rise, &self.risen, gain, end)
-    }
-
-    #[inline(always)]
-    fn located_on(&self, density: &Nodal, whole: &Nodal, gain: f64, end: f64) -> f64 {
+    fn located(&self, density: &Nodal, whole: &Nodal, gain: f64, end: f64) -> f64 {
         let value = gain + dot(&self.past, density);
         QUADRATURE.located(density, whole, value, (self.at, end))
     }
 }
-
-/// The rates of a slip, and estimates of θ times its growth until the present phase and until the impact is over.
-type Outlook = (SlipRates, [f64; 2]);
 
 /// An impact under way.
 struct OngoingImpact<'a> {
@@ -652,7 +620,7 @@ impl OngoingImpact<'_> {
         }
         let mut d = self.slip.map(|x| x / rho);
         let rates = axes.rates(d);
-        let slope = rates.turn_slope();
+        let slope = rates.turn_slope;
         if slope < 0.0 {
             let off = (rates.turn / slope).abs();
             if off > ALONG && push * off > tiny * rates.across {
@@ -734,12 +702,12 @@ impl OngoingImpact<'_> {
                 self.slip = sector.ray.map(|x| x * rho);
                 return self.along(sector.ray, rho);
             }
-            let outlook = self.outlook(&sector, [w, rho]);
-            if self.rests(&sector, [w, rho], &outlook) {
+            let [growth, phase, whole] = self.outlook(&sector, [w, rho]);
+            if self.rests(&sector, [w, rho], growth, phase) {
                 self.slip = [0.0; 2];
                 return false;
             }
-            let length = self.length(&sector, w, &outlook).min(most);
+            let length = self.length(&sector, w, growth, whole).min(most);
             let mut panel = Panel::new(axes, &sector, w, rho, length);
             most = f64::INFINITY;
             while panel.at < 0.999 {
@@ -761,18 +729,20 @@ impl OngoingImpact<'_> {
         true
     }
 
+    /// d ln ρ/dθ, and θ until the present phase and until the impact is over if ρ and dv_n/dp stayed what they are.
     #[inline(always)]
-    fn outlook(&self, sector: &Sector, [w, rho]: [f64; 2]) -> Outlook {
+    fn outlook(&self, sector: &Sector, [w, rho]: [f64; 2]) -> [f64; 3] {
         let axes = self.axes;
         let d = sector.direction(w);
         let ways = self.now.left(axes.stiffness(axes.pull(d)));
-        (axes.rates(d), ways.map(|p| p.min(1e100) * axes.rate / rho))
+        let [phase, whole] = ways.map(|p| p.min(1e100) * axes.rate / rho);
+        [axes.rates(d).growth, phase, whole]
     }
 
     /// The length of the next panel: as long as the functions are resolved, but not much longer than until the impact is over.
     #[inline(always)]
-    fn length(&self, sector: &Sector, w: f64, (rates, [_, left]): &Outlook) -> f64 {
-        let (growth, pace) = (rates.growth, sector.pace(w));
+    fn length(&self, sector: &Sector, w: f64, growth: f64, left: f64) -> f64 {
+        let pace = sector.pace(w);
         let clear = sector.reach(w).min(sector.monotone(self.axes, w));
         let steep = (growth / pace).abs();
         // p = ρ₀(e^{rθ} − 1)/r
@@ -794,10 +764,9 @@ impl OngoingImpact<'_> {
 
     /// Goes on to where the slip comes to rest, if one piece leads there, v_n is monotone until then, and nothing else happens before.
     #[inline(always)]
-    fn rests(&mut self, sector: &Sector, [w, rho]: [f64; 2], outlook: &Outlook) -> bool {
-        let power = sector.power();
-        let (rates, [left, _]) = outlook;
-        let growth = rates.growth.max(sector.growth[0]);
+    fn rests(&mut self, sector: &Sector, [w, rho]: [f64; 2], growth: f64, left: f64) -> bool {
+        let power = sector.power;
+        let growth = growth.max(sector.growth[0]);
         if self.rest_is_beyond
             || !(0.0 < power && power < MOST_POWER)
             || -growth * left < 0.8
@@ -818,7 +787,7 @@ impl OngoingImpact<'_> {
     /// The gain until the slip is at rest. None if the polynomials are not good to rounding.
     #[inline(always)]
     fn rest(&self, sector: &Sector, w: f64, rho: f64) -> Option<Gain> {
-        let power = sector.power();
+        let power = sector.power;
         let [growth, pace, cosine, sine] = sector.functions(&each(|j| w * QUADRATURE.nodes[j]));
         let change = each(|j| (power - growth[j]) / QUADRATURE.nodes[j]);
         // ln G is the integral from t to 1.
@@ -826,7 +795,6 @@ impl OngoingImpact<'_> {
         let past = rows(&QUADRATURE.integral, &change);
         let impulse = each(|j| -rho * exp(whole - past[j]) * pace[j]);
         let parts = Sector::parts(impulse, &cosine, &sine);
-        let inverse = each(|k| 1.0 / (power + k as f64));
         let weights = rows(&QUADRATURE.legendre, &moments(power));
         let sums = Sector::sums(&weights, &parts);
         let is_rough = QUADRATURE.last(&change) > 1.5 * RESOLVED * whole.abs().max(1.0)
@@ -838,15 +806,7 @@ impl OngoingImpact<'_> {
         if self.now.hypothesis == Hypothesis::Stronge {
             // What is left of the rise at a node is t^a V.
             let rise = sector.rise(self.axes, &parts);
-            let mut series = rows(&QUADRATURE.legendre_of, &rise);
-            let mut sum = 0.0;
-            for (k, term) in series.iter_mut().enumerate().rev() {
-                let factor = (2 * k + 1) as f64;
-                let v = (*term - factor * sum) * inverse[k];
-                sum += v;
-                *term = v / factor;
-            }
-            let left = rows(&QUADRATURE.legendre, &series);
+            let left = QUADRATURE.divided(&rise, power);
             let left = each(|j| left[j] * impulse[j] / QUADRATURE.weights[j]);
             let weights = rows(&QUADRATURE.legendre, &moments(2.0 * power));
             let lost = dot(&weights, &left) / self.axes.rate;
@@ -862,14 +822,20 @@ impl OngoingImpact<'_> {
         if panel.at > 0.0 && self.now.is_almost_over(gain) {
             return false;
         }
-        let mut density = panel.parts[0];
-        if self.now.hypothesis == Hypothesis::Stronge {
-            density = panel.work(self.now.speed);
-        }
+        let density = self.given(panel);
         let size = dot(&QUADRATURE.weights, &density.map(f64::abs));
         QUADRATURE.last(&density) <= RESOLVED * size
             || panel.length < 0.5 * sector.reach(panel.w)
                 && dot(&QUADRATURE.weights, &panel.growth).abs() < 1.0
+    }
+
+    /// What the restitution has to give, over a panel.
+    #[inline(always)]
+    fn given(&self, panel: &Panel) -> Nodal {
+        match self.now.hypothesis {
+            Hypothesis::Stronge => panel.work(self.now.speed),
+            _ => panel.parts[0],
+        }
     }
 
     /// The gain from where the impact is in a panel to the place with these weights.
@@ -904,7 +870,7 @@ impl OngoingImpact<'_> {
         let mut end = 1.0;
         if !self.now.compressing && self.now.speed + rise < 0.0 {
             // Where it would be pressed together again, unless it is over by then.
-            end = panel.located_speed(-self.now.speed, 1.0);
+            end = panel.located(&panel.rise, &panel.risen, -self.now.speed, 1.0);
             let weights = QUADRATURE.until(end);
             let mut gain = self.gain(sector, panel, &weights);
             gain.speed = -self.now.speed;
@@ -914,13 +880,13 @@ impl OngoingImpact<'_> {
                 return self.over(ImpactSoFar::pressed_again);
             }
         }
-        let rate = self.axes.rate;
         let t = if self.now.compressing {
-            panel.located_speed(self.now.wanted_speed() - self.now.speed, end)
-        } else if self.now.hypothesis == Hypothesis::Stronge {
-            panel.located(&panel.work(self.now.speed), self.now.missing() * rate, end)
+            let gain = self.now.wanted_speed() - self.now.speed;
+            panel.located(&panel.rise, &panel.risen, gain, end)
         } else {
-            panel.located(&panel.parts[0], self.now.missing() * rate, end)
+            let density = self.given(panel);
+            let whole = rows(&QUADRATURE.integral, &density);
+            panel.located(&density, &whole, self.now.missing() * self.axes.rate, end)
         };
         let weights = QUADRATURE.until(t);
         let gain = self.gain(sector, panel, &weights);

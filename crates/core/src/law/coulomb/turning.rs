@@ -21,7 +21,6 @@ use crate::law::{Compliant, Components, Contact, ImpulseRule, MOST_CONTACTS, Res
 use crate::simd::elementary::{exp_in_lanes, exp_m1_in_lanes, polynomial};
 use crate::simd::{Mask, Pack};
 use pulp::{Simd, WithSimd};
-use queue::Pending;
 use std::f64::consts::PI;
 
 /// Makes a struct of numbers, truth values and what all lanes share, and what takes some of its lanes from another one.
@@ -35,16 +34,16 @@ macro_rules! in_lanes {
     ) => {
         $(#[$about])*
         #[derive(Clone, Copy)]
-        struct $name<S: Simd, const K: usize> {
-            $($(#[$text])* pub $number: Pack<S, K>,)*
-            $($($(#[$note])* pub $mask: Mask<S, K>,)*)?
+        struct $name<S: Simd> {
+            $($(#[$text])* pub $number: Pack<S, 1>,)*
+            $($($(#[$note])* pub $mask: Mask<S, 1>,)*)?
             $($($(#[$said])* pub $shared: $kind,)*)?
         }
 
-        impl<S: Simd, const K: usize> $name<S, K> {
+        impl<S: Simd> $name<S> {
             /// Lane by lane one or the other.
             #[inline(always)]
-            pub fn choose(lanes: Mask<S, K>, a: &Self, b: &Self) -> Self {
+            pub fn choose(lanes: Mask<S, 1>, a: &Self, b: &Self) -> Self {
                 Self {
                     $($number: lanes.select(a.$number, b.$number),)*
                     $($($mask: lanes & a.$mask | !lanes & b.$mask,)*)?
@@ -55,43 +54,8 @@ macro_rules! in_lanes {
     };
 }
 
-/// A contact, and what of it enters Coulomb's law.
-#[derive(Clone, Copy)]
-struct Slipping<S: Simd, const K: usize> {
-    /// −v_c^n ≥ 0.
-    pub speed: Pack<S, K>,
-    /// v_c^u and v_c^w.
-    pub along: Pack<S, K>,
-    pub across: Pack<S, K>,
-    pub nn: Pack<S, K>,
-    pub nu: Pack<S, K>,
-    pub uu: Pack<S, K>,
-    pub ww: Pack<S, K>,
-    /// ε_n.
-    pub restitution: Pack<S, K>,
-}
-
-impl<S: Simd> Slipping<S, 1> {
-    #[inline(always)]
-    fn new(contact: &Contact<Pack<S, 1>>, restitution: Pack<S, 1>) -> Self {
-        let (k, velocity) = (&contact.compliance, contact.velocity);
-        Self {
-            speed: contact.approach_speed(),
-            along: velocity.along,
-            across: velocity.across,
-            nn: k.nn(),
-            nu: k.nu(),
-            uu: k.uu(),
-            ww: k.ww(),
-            restitution,
-        }
-    }
-}
-
 // ========================================================================================================
-// The rates of the slip
-//
-// K, in the frame of the slip, with friction.
+// K, in the frame of the slip, with friction
 // ========================================================================================================
 
 in_lanes! {
@@ -115,10 +79,9 @@ in_lanes! {
     }
 }
 
-impl<S: Simd, const K: usize> Rates<S, K> {
+impl<S: Simd> Rates<S> {
     #[inline(always)]
-    pub fn new(contact: &Slipping<S, K>, friction: f64) -> Self {
-        let Slipping { nn, nu, uu, ww, .. } = *contact;
+    pub fn new([nn, nu, uu, ww]: [Pack<S, 1>; 4], friction: f64) -> Self {
         let square = nu * nu;
         let lost = nu.mul_add(nu, -square);
         let determinant = nn.mul_add(uu, -square) - lost;
@@ -141,7 +104,7 @@ impl<S: Simd, const K: usize> Rates<S, K> {
 
     /// Takes **u** so that this is K_nu.
     #[inline(always)]
-    pub fn turn(&mut self, nu: Pack<S, K>) {
+    pub fn turn(&mut self, nu: Pack<S, 1>) {
         let (a, b) = (self.uu * self.friction, self.brake);
         self.nu = nu;
         self.plus = nu + (b - a);
@@ -152,7 +115,7 @@ impl<S: Simd, const K: usize> Rates<S, K> {
 
     /// Sum of the rates at which direction and size of the slip change in θ.
     #[inline(always)]
-    pub fn pace(&self, y: Pack<S, K>) -> Pack<S, K> {
+    pub fn pace(&self, y: Pack<S, 1>) -> Pack<S, 1> {
         let turning = self.minus.abs().mul_add(y, self.plus.abs());
         let growing = self.kappa.abs().mul_add(y, self.decay.abs());
         turning.mul_add(2.0, growing + 1e-30)
@@ -160,7 +123,7 @@ impl<S: Simd, const K: usize> Rates<S, K> {
 
     /// Δv_c^n after ∫A dθ, ∫Ay dθ and ∫Ay² dθ.
     #[inline(always)]
-    pub fn velocity(&self, [x, y, z]: [Pack<S, K>; 3]) -> Pack<S, K> {
+    pub fn velocity(&self, [x, y, z]: [Pack<S, 1>; 3]) -> Pack<S, 1> {
         let jam = self.nu * self.friction;
         let twice = 2.0 * self.nn;
         x.mul_add(self.nn - jam, y.mul_add(twice, z * (self.nn + jam)))
@@ -168,16 +131,14 @@ impl<S: Simd, const K: usize> Rates<S, K> {
 
     /// dv_c^n/dp times 1 + y.
     #[inline(always)]
-    pub fn slope(&self, y: Pack<S, K>) -> Pack<S, K> {
+    pub fn slope(&self, y: Pack<S, 1>) -> Pack<S, 1> {
         let jam = self.nu * self.friction;
         (self.nn + jam).mul_add(y, self.nn - jam)
     }
 }
 
 // ========================================================================================================
-// Where an impact has come to
-//
-// Where an impact with turning slip has come to, what ends it, and its end once the slip has come to rest.
+// Where an impact has come to, what ends it, and its end once the slip has come to rest
 // ========================================================================================================
 
 /// Slip at which it counts as vanished, relative to the contact velocity; the impulse is of the order of that.
@@ -230,10 +191,10 @@ in_lanes! {
     }
 }
 
-impl<S: Simd, const K: usize> Goal<S, K> {
+impl<S: Simd> Goal<S> {
     /// The part of the restitution that is still missing: < 0 once it is over.
     #[inline(always)]
-    pub fn missing(&self, at: &Course<S, K>) -> Pack<S, K> {
+    pub fn missing(&self, at: &Course<S>) -> Pack<S, 1> {
         match self.hypothesis {
             Hypothesis::Newton => self.rebound - at.v,
             Hypothesis::Poisson => {
@@ -244,7 +205,7 @@ impl<S: Simd, const K: usize> Goal<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> Course<S, K> {
+impl<S: Simd> Course<S> {
     /// |**s**|, A and y from u and w.
     #[inline(always)]
     pub fn direction(&mut self) {
@@ -260,7 +221,7 @@ impl<S: Simd, const K: usize> Course<S, K> {
 
     /// Turns **u** round in the lanes of the mask.
     #[inline(always)]
-    pub fn turn_round(&mut self, mask: Mask<S, K>, rates: &mut Rates<S, K>) {
+    pub fn turn_round(&mut self, mask: Mask<S, 1>, rates: &mut Rates<S>) {
         self.u = mask.select(-self.u, self.u);
         self.along = mask.select(-self.along, self.along);
         self.mirror = mask.select(-self.mirror, self.mirror);
@@ -269,7 +230,7 @@ impl<S: Simd, const K: usize> Course<S, K> {
 
     /// Returns whether it has gone beyond the next event.
     #[inline(always)]
-    pub fn is_late(&self, goal: &Goal<S, K>) -> Mask<S, K> {
+    pub fn is_late(&self, goal: &Goal<S>) -> Mask<S, 1> {
         let zero = Pack::splat(self.v.simd(), 0.0);
         let done = self.v.lt(0.0) | goal.missing(self).le(0.0);
         self.compressing & zero.le(self.v) | !self.compressing & done
@@ -277,7 +238,7 @@ impl<S: Simd, const K: usize> Course<S, K> {
 
     /// Ends the compression, of the lanes in the mask, where v_c^n = 0.
     #[inline(always)]
-    pub fn turn_back(&mut self, mask: Mask<S, K>, goal: &Goal<S, K>) {
+    pub fn turn_back(&mut self, mask: Mask<S, 1>, goal: &Goal<S>) {
         // The balance begins anew, so that a little restitution is not lost in a large compression.
         let balance = self.balance + self.work;
         let taken = self.taken.max(-balance);
@@ -294,7 +255,7 @@ impl<S: Simd, const K: usize> Course<S, K> {
 
     /// The end of the impact, where the slip has come to rest: it sticks, or slips on the way that K_nu drives it.
     #[inline(always)]
-    pub fn finish(&mut self, rates: &Rates<S, K>, goal: &Goal<S, K>) {
+    pub fn finish(&mut self, rates: &Rates<S>, goal: &Goal<S>) {
         let friction = (-rates.nu / rates.uu)
             .max(-rates.friction)
             .min(rates.friction);
@@ -328,9 +289,7 @@ impl<S: Simd, const K: usize> Course<S, K> {
 }
 
 // ========================================================================================================
-// The direction of the slip
-//
-// The direction and size of a slip that turns, in closed form, and how far they are resolved by the nodes of a panel.
+// The direction and size of a slip that turns, in closed form, and how far they are resolved by the nodes of a panel
 //
 // The direction has fixed points: y* = 0 and y* = −ρ₊/ρ₋, if that is positive. About the nearer one, with D = y − y*, σ = ρ₊ or −ρ₊
 // and λ* = λ + κy*,
@@ -387,33 +346,33 @@ const ARTANH: [f64; 13] = [
 ];
 
 /// The hodograph from a point on.
-struct Hodograph<S: Simd, const K: usize> {
+struct Hodograph<S: Simd> {
     /// y, y* and D.
-    y: Pack<S, K>,
-    pub limit: Pack<S, K>,
-    distance: Pack<S, K>,
-    sigma: Pack<S, K>,
-    minus: Pack<S, K>,
+    y: Pack<S, 1>,
+    pub limit: Pack<S, 1>,
+    distance: Pack<S, 1>,
+    sigma: Pack<S, 1>,
+    minus: Pack<S, 1>,
     /// λ + κy* and κ.
-    decay: Pack<S, K>,
-    kappa: Pack<S, K>,
+    decay: Pack<S, 1>,
+    kappa: Pack<S, 1>,
     /// −D/σ and σ + ρ₋D.
-    scale: Pack<S, K>,
-    gamma: Pack<S, K>,
+    scale: Pack<S, 1>,
+    gamma: Pack<S, 1>,
 }
 
 /// A point of it.
-struct HodographPoint<S: Simd, const K: usize> {
+struct HodographPoint<S: Simd, const N: usize> {
     /// The decrease of y.
-    pub lost: Pack<S, K>,
+    pub lost: Pack<S, N>,
     /// ∫D dθ, and ln A less its first value.
-    pub turn: Pack<S, K>,
-    pub growth: Pack<S, K>,
+    pub turn: Pack<S, N>,
+    pub growth: Pack<S, N>,
 }
 
-impl<S: Simd, const K: usize> Hodograph<S, K> {
+impl<S: Simd> Hodograph<S> {
     #[inline(always)]
-    pub fn new(rates: &Rates<S, K>, y: Pack<S, K>) -> Self {
+    pub fn new(rates: &Rates<S>, y: Pack<S, 1>) -> Self {
         let (plus, minus) = (rates.plus, rates.minus);
         let bend = minus * y;
         let gamma = minus.mul_add(y, plus);
@@ -440,25 +399,29 @@ impl<S: Simd, const K: usize> Hodograph<S, K> {
 
     /// With ζ = D₀(1 − exp(−2σθ))/σ: D₀ − D = (σ + ρ₋D₀)ζ/(1 + ρ₋ζ) and ∫D dθ = ln(1 + ρ₋ζ)/2ρ₋.
     #[inline(always)]
-    pub fn at(&self, theta: Pack<S, K>) -> HodographPoint<S, K> {
-        let zeta = exp_m1_in_lanes(-2.0 * self.sigma * theta) * self.scale;
-        let q = self.minus * zeta;
+    pub fn at<const N: usize>(&self, theta: Pack<S, N>) -> HodographPoint<S, N> {
+        let (sigma, minus) = (self.sigma.repeat(), self.minus.repeat());
+        let zeta = exp_m1_in_lanes(-2.0 * sigma * theta) * self.scale.repeat();
+        let q = minus * zeta;
         let (m, n) = (q + 1.0, q + 2.0);
         // One division for both; ln(1 + q) = 2 artanh(q/(2 + q)).
         let inverse = zeta / (m * n);
         let half = m * inverse;
-        let s = self.minus * half;
+        let s = minus * half;
         let turn = half * polynomial(ARTANH, s * s);
         HodographPoint {
-            lost: self.gamma * n * inverse,
+            lost: self.gamma.repeat() * n * inverse,
             turn,
-            growth: -self.decay.mul_add(theta, self.kappa * turn),
+            growth: -self
+                .decay
+                .repeat()
+                .mul_add(theta, self.kappa.repeat() * turn),
         }
     }
 
     /// The distance in θ until ρ₋ζ is too large for the series of artanh, or y has grown too much: infinitely far if it never does.
     #[inline(always)]
-    fn steep(&self) -> Pack<S, K> {
+    fn steep(&self) -> Pack<S, 1> {
         let bend = self.minus * self.distance;
         let (most, least) = (2.0 * STEEP / (1.0 - STEEP), -2.0 * STEEP / (1.0 + STEEP));
         let steep = bend * bend.lt(0.0).select(1.0 / least, 1.0 / most);
@@ -469,7 +432,7 @@ impl<S: Simd, const K: usize> Hodograph<S, K> {
 
     /// The distance in θ up to which it may be followed: where 1/y vanishes next to the path the functions have poles.
     #[inline(always)]
-    fn resolved(&self) -> Pack<S, K> {
+    fn resolved(&self) -> Pack<S, 1> {
         // 1 + ρ₋ζ = 0 where exp(−2σθ) = E = 1 + σ/ρ₋D; |ln E| ≥ 16|q − 1|/(q + 1) with q⁸ = |E|.
         let bend = self.minus * self.distance;
         let ratio = self.gamma / bend;
@@ -491,7 +454,7 @@ impl<S: Simd, const K: usize> Hodograph<S, K> {
 
     /// The longest panel on which the functions are resolved.
     #[inline(always)]
-    pub fn longest(&self, rates: &Rates<S, K>, at: &Course<S, K>) -> Pack<S, K> {
+    pub fn longest(&self, rates: &Rates<S>, at: &Course<S>) -> Pack<S, 1> {
         let y = self.y;
         let size = self.distance.abs();
         let still = size.eq(0.0);
@@ -508,31 +471,9 @@ impl<S: Simd, const K: usize> Hodograph<S, K> {
     }
 }
 
-impl<S: Simd> Hodograph<S, 1> {
-    /// For several points of it.
-    #[inline(always)]
-    pub fn repeat<const N: usize>(&self) -> Hodograph<S, N> {
-        Hodograph {
-            y: self.y.repeat(),
-            limit: self.limit.repeat(),
-            distance: self.distance.repeat(),
-            sigma: self.sigma.repeat(),
-            minus: self.minus.repeat(),
-            decay: self.decay.repeat(),
-            kappa: self.kappa.repeat(),
-            scale: self.scale.repeat(),
-            gamma: self.gamma.repeat(),
-        }
-    }
-}
-
 /// Least way, in θ, on which ζ becomes so large: infinite if it never does.
 #[inline(always)]
-fn reach<S: Simd, const K: usize>(
-    sigma: Pack<S, K>,
-    distance: Pack<S, K>,
-    zeta: Pack<S, K>,
-) -> Pack<S, K> {
+fn reach<S: Simd>(sigma: Pack<S, 1>, distance: Pack<S, 1>, zeta: Pack<S, 1>) -> Pack<S, 1> {
     // −ln(1 − t)/2σ with t = σζ/D; −ln(1 − t) ≥ 8(1 − q)/(1 + q) with q⁴ = 1 − t.
     let fourth = 1.0 - sigma * zeta / distance;
     let q = fourth.max(0.0).sqrt().sqrt();
@@ -543,9 +484,7 @@ fn reach<S: Simd, const K: usize>(
 }
 
 // ========================================================================================================
-// A panel
-//
-// A part of the way of a slip that turns, by quadrature over its nodes.
+// A panel: a part of the way of a slip that turns, by quadrature over its nodes
 //
 // With ∫A dθ, ∫Ay dθ and ∫Ay² dθ everything is known: dp = A(1 + y)² dθ, |**s**|-weighted friction −μA(1 − y²) dθ along
 // **u**, dA = −A(λ + κy) dθ and dw = −μK_ww w(1 + y) dθ. With v_c^n as it follows from p and u, the work of the normal force is
@@ -572,13 +511,12 @@ fn sum<S: Simd>(terms: &Pack<S, WIDE>) -> Pack<S, 1> {
 /// Goes on by θ = `length`, integrated by quadrature.
 #[inline(always)]
 fn integrate_panel<S: Simd>(
-    (rates, path): (&Rates<S, 1>, &Hodograph<S, 1>),
-    goal: &Goal<S, 1>,
-    at: &Course<S, 1>,
+    (rates, path): (&Rates<S>, &Hodograph<S>),
+    goal: &Goal<S>,
+    at: &Course<S>,
     length: Pack<S, 1>,
-) -> Course<S, 1> {
+) -> Course<S> {
     let end_turn = path.limit.mul_add(length, path.at(length).turn);
-    let path = path.repeat::<WIDE>();
     let start = at.y.repeat::<WIDE>();
     let zero = Pack::<S, WIDE>::splat(at.y.simd(), 0.0);
     let [mut x, mut y, mut z, mut moment] = [zero; 4];
@@ -614,12 +552,12 @@ fn integrate_panel<S: Simd>(
 
 /// The slip and the impulse after ∫A dθ, ∫Ay dθ, ∫Ay² dθ, θ and ∫y dθ.
 #[inline(always)]
-fn arrive<S: Simd, const K: usize>(
-    rates: &Rates<S, K>,
-    at: &mut Course<S, K>,
-    [x, y, z]: [Pack<S, K>; 3],
-    theta: Pack<S, K>,
-    turn: Pack<S, K>,
+fn arrive<S: Simd>(
+    rates: &Rates<S>,
+    at: &mut Course<S>,
+    [x, y, z]: [Pack<S, 1>; 3],
+    theta: Pack<S, 1>,
+    turn: Pack<S, 1>,
 ) {
     let exponent = -rates.decay.mul_add(theta, rates.kappa * turn);
     let braked = (-(rates.brake * (theta + turn))).max(-BRAKE);
@@ -670,19 +608,19 @@ const NEWTON_STEPS: usize = 2;
 
 /// Coefficients of x, x², ...
 #[derive(Clone, Copy)]
-struct Polynomial<S: Simd, const K: usize>(pub [Pack<S, K>; ORDER]);
+struct Polynomial<S: Simd>(pub [Pack<S, 1>; ORDER]);
 
 /// The argument at which a series takes a value.
-struct Root<S: Simd, const K: usize> {
-    pub x: Pack<S, K>,
+struct Root<S: Simd> {
+    pub x: Pack<S, 1>,
     /// The slope there, and Newton's last step.
-    pub slope: Pack<S, K>,
-    pub step: Pack<S, K>,
+    pub slope: Pack<S, 1>,
+    pub step: Pack<S, 1>,
 }
 
-impl<S: Simd, const K: usize> Polynomial<S, K> {
+impl<S: Simd> Polynomial<S> {
     #[inline(always)]
-    pub fn at(&self, x: Pack<S, K>) -> Pack<S, K> {
+    pub fn at(&self, x: Pack<S, 1>) -> Pack<S, 1> {
         let mut sum = self.0[ORDER - 1];
         for k in (0..ORDER - 1).rev() {
             sum = sum.mul_add(x, self.0[k]);
@@ -692,7 +630,7 @@ impl<S: Simd, const K: usize> Polynomial<S, K> {
 
     /// Finds the argument, beyond `from`, at which it is `value`; its slope at `from` is `slope`.
     #[inline(always)]
-    pub fn reaches(&self, value: Pack<S, K>, from: Pack<S, K>, slope: Pack<S, K>) -> Root<S, K> {
+    pub fn reaches(&self, value: Pack<S, 1>, from: Pack<S, 1>, slope: Pack<S, 1>) -> Root<S> {
         let rest = value - self.at(from);
         let mut x = from + parabola(slope, self.0[1], rest);
         let mut step = x;
@@ -714,18 +652,14 @@ impl<S: Simd, const K: usize> Polynomial<S, K> {
 
     /// Size of what is left out at 1.
     #[inline(always)]
-    pub fn rest(&self) -> Pack<S, K> {
+    pub fn rest(&self) -> Pack<S, 1> {
         self.0[ORDER - 1].abs() + self.0[ORDER - 2].abs()
     }
 }
 
 /// Solves bx + cx² = `value`: the root next to 0, or the positive one where b = 0.
 #[inline(always)]
-fn parabola<S: Simd, const K: usize>(
-    b: Pack<S, K>,
-    c: Pack<S, K>,
-    value: Pack<S, K>,
-) -> Pack<S, K> {
+fn parabola<S: Simd>(b: Pack<S, 1>, c: Pack<S, 1>, value: Pack<S, 1>) -> Pack<S, 1> {
     let root = b.mul_add(b, 4.0 * c * value).max(0.0).sqrt();
     let sum = b + b.lt(0.0).select(-root, root);
     sum.eq(0.0).select(0.0, 2.0 * value / sum)
@@ -733,15 +667,13 @@ fn parabola<S: Simd, const K: usize>(
 
 /// |x| to the power of the first term left out.
 #[inline(always)]
-fn power<S: Simd, const K: usize>(x: Pack<S, K>) -> Pack<S, K> {
+fn power<S: Simd>(x: Pack<S, 1>) -> Pack<S, 1> {
     let cube = x * x * x;
     (cube * cube * x).abs()
 }
 
 // ========================================================================================================
-// The next event
-//
-// How far to go on: to the next event, as far as one can tell from here, and back where that was too far.
+// How far to go on: to the next event, as far as one can tell from here, and back where that was too far
 // ========================================================================================================
 
 /// Guess of x up to which the series are asked.
@@ -749,37 +681,9 @@ const NEAR: f64 = 3.0;
 /// Length over which v_c^n may have an extremum between its ends, times R.
 const SHORT: f64 = 1.0 / 1_048_576.0; // 2⁻²⁰
 
-/// The way to the next event if the velocity is linear in p and A(1 + y)² exponential in θ; backwards where that is behind.
-struct WayToEvent<S: Simd, const K: usize> {
-    /// In p and in θ.
-    pub impulse: Pack<S, K>,
-    pub length: Pack<S, K>,
-    /// v_c^n rises, or falls towards an end of the restitution.
-    leads: Mask<S, K>,
-    /// > 0 unless the slip would have vanished before.
-    pub fourth: Pack<S, K>,
-}
-
-/// The distance to the next event in θ; infinite if there is none.
+/// The distance to the next event in θ if the velocity is linear in p and A(1 + y)² exponential in θ; infinite if there is none.
 #[inline(always)]
-fn guess<S: Simd, const K: usize>(
-    rates: &Rates<S, K>,
-    goal: &Goal<S, K>,
-    at: &Course<S, K>,
-) -> Pack<S, K> {
-    let way = way(rates, goal, at);
-    let zero = Pack::splat(at.v.simd(), 0.0);
-    let ahead = way.leads & zero.le(way.impulse) & zero.lt(way.fourth);
-    ahead.select(way.length, f64::INFINITY)
-}
-
-/// The way to the next event.
-#[inline(always)]
-fn way<S: Simd, const K: usize>(
-    rates: &Rates<S, K>,
-    goal: &Goal<S, K>,
-    at: &Course<S, K>,
-) -> WayToEvent<S, K> {
+fn guess<S: Simd>(rates: &Rates<S>, goal: &Goal<S>, at: &Course<S>) -> Pack<S, 1> {
     let whole = 1.0 + at.y;
     let stiff = rates.slope(at.y) / whole;
     let zero = Pack::splat(at.v.simd(), 0.0);
@@ -804,17 +708,14 @@ fn way<S: Simd, const K: usize>(
     let q = fourth.max(0.0).sqrt().sqrt();
     // ln(1 + t) = 8(q − 1)/(q + 1), nearly, with q⁴ = 1 + t.
     let theta = 8.0 * share / ((q + 1.0) * (q + 1.0) * q.mul_add(q, 1.0));
-    WayToEvent {
-        impulse: p,
-        length: theta,
-        leads: zero.lt(stiff) | !at.compressing,
-        fourth,
-    }
+    // v_c^n rises, or falls towards an end of the restitution; the slip would not have vanished before.
+    let leads = zero.lt(stiff) | !at.compressing;
+    (leads & zero.le(p) & zero.lt(fourth)).select(theta, f64::INFINITY)
 }
 
 /// The distance in θ over which v_c^n certainly has no extremum, or almost certainly.
 #[inline(always)]
-fn crest<S: Simd, const K: usize>(rates: &Rates<S, K>, at: &Course<S, K>) -> Pack<S, K> {
+fn crest<S: Simd>(rates: &Rates<S>, at: &Course<S>) -> Pack<S, 1> {
     let zero = Pack::splat(at.y.simd(), 0.0);
     let (now, jam) = (rates.slope(at.y), rates.nu * rates.friction);
     // There y = c, and y₀ − y = (ρ₊ + ρ₋y₀)ζ/(1 + ρ₋ζ).
@@ -826,11 +727,7 @@ fn crest<S: Simd, const K: usize>(rates: &Rates<S, K>, at: &Course<S, K>) -> Pac
 
 /// Goes through the events that are near, and says how far the next one is, in θ: infinitely far if there is none.
 #[inline(always)]
-fn events<S: Simd, const K: usize>(
-    rates: &Rates<S, K>,
-    goal: &Goal<S, K>,
-    at: &mut Course<S, K>,
-) -> Pack<S, K> {
+fn events<S: Simd>(rates: &Rates<S>, goal: &Goal<S>, at: &mut Course<S>) -> Pack<S, 1> {
     let far = guess(rates, goal, at);
     let crest = crest(rates, at);
     let near = (at.is_late(goal) | (far * rates.pace(at.y)).le(NEAR)) & !at.over;
@@ -843,18 +740,18 @@ fn events<S: Simd, const K: usize>(
 
 /// The lanes that have gone too far on the way from `at` to `end`: an event is too far behind the end for the series.
 #[inline(always)]
-fn beyond<S: Simd, const K: usize>(
-    rates: &Rates<S, K>,
-    goal: &Goal<S, K>,
-    at: &Course<S, K>,
-    end: &Course<S, K>,
-    length: Pack<S, K>,
-) -> Mask<S, K> {
+fn beyond<S: Simd>(
+    rates: &Rates<S>,
+    goal: &Goal<S>,
+    at: &Course<S>,
+    end: &Course<S>,
+    length: Pack<S, 1>,
+) -> Mask<S, 1> {
     let zero = Pack::splat(at.v.simd(), 0.0);
     let y = end.w * end.w / (4.0 * end.a * end.a);
     let slip = end.a * (1.0 + y);
     let reach = 0.5 / rates.pace(y);
-    let is_far = |off: Pack<S, K>, rate: Pack<S, K>| zero.lt(off) & !off.le(rate * reach);
+    let is_far = |off: Pack<S, 1>, rate: Pack<S, 1>| zero.lt(off) & !off.le(rate * reach);
     let after = rates.slope(y);
     let sign = at.compressing.select(1.0, zero - 1.0);
     let rests = is_far(sign * end.v, sign * slip * after);
@@ -868,9 +765,7 @@ fn beyond<S: Simd, const K: usize>(
 }
 
 // ========================================================================================================
-// Events that are near
-//
-// The impact as power series about where it has come to: what happens there, and how far the next event is.
+// Events that are near: the impact as power series about where it has come to
 //
 // The variable is x = Rθ with R the sum of the rates, so that the series converge for x of the order of 1. Where their last terms do
 // not count, an event is found to rounding; else the series say how far to go for it to be near.
@@ -884,23 +779,23 @@ const EXACT: f64 = 1.0 / 9_007_199_254_740_992.0; // 2⁻⁵³
 const ROUGH: f64 = 1.0 / 128.0;
 
 /// The series.
-struct Near<S: Simd, const K: usize> {
+struct Near<S: Simd> {
     /// 1/R.
-    unit: Pack<S, K>,
+    unit: Pack<S, 1>,
     /// ∫A dθ, ∫Ay dθ, ∫Ay² dθ, ∫y dθ.
-    first: Polynomial<S, K>,
-    second: Polynomial<S, K>,
-    third: Polynomial<S, K>,
-    turn: Polynomial<S, K>,
+    first: Polynomial<S>,
+    second: Polynomial<S>,
+    third: Polynomial<S>,
+    turn: Polynomial<S>,
     /// Impulse along **n**, v_c^n, work of the normal force, as they change.
-    impulse: Polynomial<S, K>,
-    velocity: Polynomial<S, K>,
-    work: Polynomial<S, K>,
+    impulse: Polynomial<S>,
+    velocity: Polynomial<S>,
+    work: Polynomial<S>,
 }
 
-impl<S: Simd, const K: usize> Near<S, K> {
+impl<S: Simd> Near<S> {
     #[inline(always)]
-    pub fn new(rates: &Rates<S, K>, at: &Course<S, K>) -> Self {
+    pub fn new(rates: &Rates<S>, at: &Course<S>) -> Self {
         let zero = Pack::splat(at.y.simd(), 0.0);
         let unit = 1.0 / rates.pace(at.y);
         let (plus, minus) = (-2.0 * rates.plus * unit, -2.0 * rates.minus * unit);
@@ -953,7 +848,7 @@ impl<S: Simd, const K: usize> Near<S, K> {
 
     /// The terms left out, as a velocity.
     #[inline(always)]
-    fn error(&self, rates: &Rates<S, K>, x: Pack<S, K>) -> Pack<S, K> {
+    fn error(&self, rates: &Rates<S>, x: Pack<S, 1>) -> Pack<S, 1> {
         let rest = self.impulse.rest().mul_add(rates.nn, self.velocity.rest());
         power(x) * rest
     }
@@ -962,24 +857,24 @@ impl<S: Simd, const K: usize> Near<S, K> {
     #[inline(always)]
     fn exact(
         &self,
-        rates: &Rates<S, K>,
-        root: &Root<S, K>,
-        from: Pack<S, K>,
-        allowed: Pack<S, K>,
-    ) -> Mask<S, K> {
+        rates: &Rates<S>,
+        root: &Root<S>,
+        from: Pack<S, 1>,
+        allowed: Pack<S, 1>,
+    ) -> Mask<S, 1> {
         let small = root.step.abs().le((root.x - from).abs() * FOUND);
         small & self.error(rates, root.x).le(allowed)
     }
 
     /// Returns whether what is `due` is a work that the series from here resolve.
     #[inline(always)]
-    fn keeps(&self, x: Pack<S, K>, from: Pack<S, K>, due: Pack<S, K>) -> Mask<S, K> {
+    fn keeps(&self, x: Pack<S, 1>, from: Pack<S, 1>, due: Pack<S, 1>) -> Mask<S, 1> {
         (self.work.rest() * power(x)).le(due * EXACT) & self.work.at(from).abs().le(16.0 * due)
     }
 
     /// Returns whether it is found roughly.
     #[inline(always)]
-    fn rough(&self, rates: &Rates<S, K>, root: &Root<S, K>, from: Pack<S, K>) -> Mask<S, K> {
+    fn rough(&self, rates: &Rates<S>, root: &Root<S>, from: Pack<S, 1>) -> Mask<S, 1> {
         let small = root.step.abs().le((root.x - from).abs() * GUESSED);
         let pace = self.impulse.0[0].mul_add(rates.nn, self.velocity.0[0].abs());
         let way = pace * root.x.abs();
@@ -990,12 +885,12 @@ impl<S: Simd, const K: usize> Near<S, K> {
     #[inline(always)]
     pub fn pass(
         &self,
-        rates: &Rates<S, K>,
-        goal: &Goal<S, K>,
-        near: Mask<S, K>,
-        crest: Pack<S, K>,
-        at: &mut Course<S, K>,
-    ) -> Pack<S, K> {
+        rates: &Rates<S>,
+        goal: &Goal<S>,
+        near: Mask<S, 1>,
+        crest: Pack<S, 1>,
+        at: &mut Course<S>,
+    ) -> Pack<S, 1> {
         let zero = Pack::splat(at.v.simd(), 0.0);
         let allowed = rates.nn.mul_add(at.normal, goal.approach) * EXACT;
         let crest = crest / self.unit;
@@ -1060,9 +955,7 @@ impl<S: Simd, const K: usize> Near<S, K> {
 }
 
 // ========================================================================================================
-// Where the slip vanishes
-//
-// Where the slip vanishes: the impulse until then as a continued fraction.
+// Where the slip vanishes: the impulse until then as a continued fraction
 //
 // With **u** taken the right way the direction tends to a fixed one, y → y*: to y* = 0 where ρ₊ ≥ 0, else to y* = −ρ₊/ρ₋. With
 // D = y − y*, σ = |ρ₊| and λ* = λ + κy*
@@ -1092,76 +985,26 @@ const SETTLED: f64 = 1.0 / 281_474_976_710_656.0; // 2⁻⁴⁸
 const STRAIGHT: f64 = 2.0 * f64::EPSILON;
 
 /// The way of a slip that vanishes.
-struct VanishingSlip<S: Simd, const K: usize> {
+struct VanishingSlip<S: Simd> {
     /// True if the slip vanishes, unless the impact is over before.
-    pub reached: Mask<S, K>,
+    pub reached: Mask<S, 1>,
     /// True if **u** is taken the other way.
-    back: Mask<S, K>,
+    back: Mask<S, 1>,
     /// A, y*, D.
-    a: Pack<S, K>,
-    limit: Pack<S, K>,
-    distance: Pack<S, K>,
+    a: Pack<S, 1>,
+    limit: Pack<S, 1>,
+    distance: Pack<S, 1>,
     /// 1/G₁, and times that ρ₋, σ, λ*, κ.
-    unit: Pack<S, K>,
-    minus: Pack<S, K>,
-    sigma: Pack<S, K>,
-    decay: Pack<S, K>,
-    kappa: Pack<S, K>,
+    unit: Pack<S, 1>,
+    minus: Pack<S, 1>,
+    sigma: Pack<S, 1>,
+    decay: Pack<S, 1>,
+    kappa: Pack<S, 1>,
 }
 
-/// N₁ to N₆ with a common factor.
-struct Numerators<S: Simd, const K: usize>([Pack<S, K>; 6]);
-
-/// The terms of the fraction: λ*, κ, 2σ, 2ρ₋, D, and D(λ*ρ₋ − κσ) and 2Dσρ₋.
-struct Terms<S: Simd, const K: usize> {
-    decay: Pack<S, K>,
-    kappa: Pack<S, K>,
-    twice: Pack<S, K>,
-    bend: Pack<S, K>,
-    distance: Pack<S, K>,
-    mixed: Pack<S, K>,
-    curl: Pack<S, K>,
-}
-
-impl<S: Simd, const K: usize> Terms<S, K> {
+impl<S: Simd> VanishingSlip<S> {
     #[inline(always)]
-    fn new(stop: &VanishingSlip<S, K>, order: f64) -> Self {
-        let d = stop.distance;
-        let (decay, kappa) = (stop.decay * order, stop.kappa * order);
-        let twice = 2.0 * stop.sigma;
-        Self {
-            decay,
-            kappa,
-            twice,
-            bend: 2.0 * stop.minus,
-            distance: d,
-            mixed: (decay * stop.minus - kappa * stop.sigma) * d,
-            curl: twice * stop.minus * d,
-        }
-    }
-
-    /// G_k.
-    #[inline(always)]
-    fn ground(&self, k: f64) -> Pack<S, K> {
-        self.twice.mul_add(k, self.decay)
-    }
-
-    /// n_{2m}.
-    #[inline(always)]
-    fn even(&self, m: f64) -> Pack<S, K> {
-        self.curl.mul_add(m, self.mixed) * (2.0 * m)
-    }
-
-    /// n_{2m+1}.
-    #[inline(always)]
-    fn odd(&self, m: f64) -> Pack<S, K> {
-        self.bend.mul_add(m, self.kappa) * self.distance * self.ground(m)
-    }
-}
-
-impl<S: Simd, const K: usize> VanishingSlip<S, K> {
-    #[inline(always)]
-    pub fn new(rates: &Rates<S, K>, at: &Course<S, K>) -> Self {
+    pub fn new(rates: &Rates<S>, at: &Course<S>) -> Self {
         let y = at.y;
         let zero = Pack::splat(y.simd(), 0.0);
         let gamma = rates.minus.mul_add(y, rates.plus);
@@ -1195,36 +1038,36 @@ impl<S: Simd, const K: usize> VanishingSlip<S, K> {
         }
     }
 
-    /// The fraction for A to the power of `order`: closed as if it went on without change, and cut off.
+    /// The fraction for A to the power of `order`, closed as if it went on without change, and cut off: N₁ to N₆ with a common factor.
     #[inline(always)]
-    fn levels(&self, order: f64) -> [Numerators<S, K>; 2] {
-        let terms = Terms::new(self, order);
+    fn levels(&self, order: f64) -> [[Pack<S, 1>; 6]; 2] {
+        let (decay, kappa, d) = (self.decay * order, self.kappa * order, self.distance);
+        let (twice, bend) = (2.0 * self.sigma, 2.0 * self.minus);
+        let mixed = (decay * self.minus - kappa * self.sigma) * d;
+        let curl = twice * self.minus * d;
+        // G_k, n_{2m}, n_{2m+1}.
+        let ground = |k: f64| twice.mul_add(k, decay);
+        let even = |m: f64| curl.mul_add(m, mixed) * (2.0 * m);
+        let odd = |m: f64| bend.mul_add(m, kappa) * d * ground(m);
         let top = (PAIRS + 1) as f64;
-        let (g, n, o) = (
-            terms.ground(2.0 * top - 1.0),
-            terms.even(top),
-            terms.odd(top),
-        );
+        let (g, n, o) = (ground(2.0 * top - 1.0), even(top), odd(top));
         // t = g + n/(g + o/t).
         let square = g * g;
         let half = square + (n - o);
         let root = half.mul_add(half, 4.0 * square * o).max(0.0).sqrt();
         let one = Pack::splat(g.simd(), 1.0);
-        let mut found = [Numerators([one; 6]), Numerators([one; 6])];
+        let mut found = [[one; 6]; 2];
         let mut pairs = [(half + root, 2.0 * g), (g, one)];
         for m in (1..=PAIRS).rev() {
-            let (n, o) = (terms.even(m as f64), terms.odd(m as f64));
-            let (low, high) = (
-                terms.ground((2 * m - 1) as f64),
-                terms.ground((2 * m) as f64),
-            );
+            let (n, o) = (even(m as f64), odd(m as f64));
+            let (low, high) = (ground((2 * m - 1) as f64), ground((2 * m) as f64));
             for i in 0..2 {
                 let second = high.mul_add(pairs[i].0, o * pairs[i].1);
                 let first = low.mul_add(second, n * pairs[i].0);
                 pairs[i] = (first, second);
                 if m <= 3 {
-                    found[i].0[2 * m - 1] = second;
-                    found[i].0[2 * m - 2] = first;
+                    found[i][2 * m - 1] = second;
+                    found[i][2 * m - 2] = first;
                 }
             }
         }
@@ -1233,7 +1076,7 @@ impl<S: Simd, const K: usize> VanishingSlip<S, K> {
 
     /// ∫(1 + y)² A dθ from the levels for A, over A/G₁, as a fraction.
     #[inline(always)]
-    fn impulse(&self, Numerators(n): &Numerators<S, K>) -> (Pack<S, K>, Pack<S, K>) {
+    fn impulse(&self, n: &[Pack<S, 1>; 6]) -> (Pack<S, 1>, Pack<S, 1>) {
         let (d, q) = (self.distance, 1.0 + self.limit);
         let pull = self.kappa * d;
         let whole = pull.mul_add(n[1], n[0]) * self.decay;
@@ -1243,7 +1086,7 @@ impl<S: Simd, const K: usize> VanishingSlip<S, K> {
 
     /// ∫(1 − y)(1 + y)² A² dθ from the levels for A², over A²/G₁, as a fraction.
     #[inline(always)]
-    fn moment(&self, Numerators(n): &Numerators<S, K>) -> (Pack<S, K>, Pack<S, K>) {
+    fn moment(&self, n: &[Pack<S, 1>; 6]) -> (Pack<S, 1>, Pack<S, 1>) {
         let (d, q) = (self.distance, 1.0 + self.limit);
         let (decay, pull) = (2.0 * self.decay, 2.0 * self.kappa * d);
         let whole = pull.mul_add(n[1], n[0]) * decay;
@@ -1261,12 +1104,7 @@ impl<S: Simd, const K: usize> VanishingSlip<S, K> {
 
     /// Goes to where the slip vanishes, if nothing happens before: of which lanes that is true.
     #[inline(always)]
-    pub fn pass(
-        &self,
-        rates: &Rates<S, K>,
-        goal: &Goal<S, K>,
-        at: &mut Course<S, K>,
-    ) -> Mask<S, K> {
+    pub fn pass(&self, rates: &Rates<S>, goal: &Goal<S>, at: &mut Course<S>) -> Mask<S, 1> {
         let zero = Pack::splat(at.y.simd(), 0.0);
         if !(self.reached & !at.over).any() {
             return self.reached & zero.lt(zero);
@@ -1331,26 +1169,29 @@ in_lanes! {
 /// Impacts under way, one in each lane.
 #[derive(Clone, Copy)]
 struct OngoingImpacts<S: Simd> {
-    rates: Rates<S, 1>,
-    goal: Goal<S, 1>,
-    course: Course<S, 1>,
-    origin: Origin<S, 1>,
+    rates: Rates<S>,
+    goal: Goal<S>,
+    course: Course<S>,
+    origin: Origin<S>,
 }
 
 impl<S: Simd> OngoingImpacts<S> {
     #[inline(always)]
-    fn new(contact: &Slipping<S, 1>, friction: f64, hypothesis: Hypothesis) -> Self {
-        let simd = contact.speed.simd();
+    fn new(contact: &Contact<Pack<S, 1>>, restitution: Pack<S, 1>, rule: &Coulomb) -> Self {
+        let simd = restitution.simd();
         let zero = Pack::splat(simd, 0.0);
-        let (along, across) = (contact.along, contact.across);
-        let size = contact.speed + (along.abs() + across.abs());
+        let k = &contact.compliance;
+        let response = [k.nn(), k.nu(), k.uu(), k.ww()];
+        let [nn, nu, uu, ww] = response;
+        let speed = contact.approach_speed();
+        let Components { along, across, .. } = contact.velocity;
+        let size = speed + (along.abs() + across.abs());
         let scale = size.eq(0.0).select(1.0, size);
         let unit = 1.0 / scale;
 
         // Lanes without a particle may hold anything, and no end.
-        let responses = contact.nn + (contact.uu + contact.ww);
-        let strikes =
-            zero.le(contact.speed) & (size + responses).lt(f64::INFINITY) & !across.eq(0.0);
+        let finite = (size + (nn + (uu + ww))).lt(f64::INFINITY);
+        let strikes = zero.le(speed) & finite & !across.eq(0.0);
         let course = Course {
             u: along * unit,
             w: across.abs() * unit,
@@ -1358,7 +1199,7 @@ impl<S: Simd> OngoingImpacts<S> {
             a: zero,
             y: zero,
             mirror: zero + 1.0,
-            v: -contact.speed * unit,
+            v: -speed * unit,
             normal: zero,
             along: zero,
             across: zero,
@@ -1372,18 +1213,18 @@ impl<S: Simd> OngoingImpacts<S> {
             limit: zero + f64::INFINITY,
         };
         Self {
-            rates: Rates::new(contact, friction),
+            rates: Rates::new(response, rule.friction),
             goal: Goal {
-                hypothesis,
-                restitution: contact.restitution,
-                approach: contact.speed * unit,
-                rebound: contact.restitution * contact.speed * unit,
+                hypothesis: rule.hypothesis,
+                restitution,
+                approach: speed * unit,
+                rebound: restitution * speed * unit,
             },
             course,
             origin: Origin {
                 panels: zero,
                 scale,
-                aside: along.eq(0.0) & contact.nu.eq(0.0),
+                aside: along.eq(0.0) & nu.eq(0.0),
                 left: across.lt(0.0),
             },
         }
@@ -1502,37 +1343,24 @@ impl<S: Simd> WithSimd for Turning<'_, S> {
             restitution,
             responses,
         } = self;
-        let simd = contacts[0].velocity.normal.simd();
-        let mut pending = [Pending::none(simd); MOST_CONTACTS];
-        let mut places = [0; MOST_CONTACTS];
-        let mut count = 0;
+        // 1 in the lanes whose answer is not known yet.
+        let mut open = [Pack::splat(restitution[0].simd(), 0.0); MOST_CONTACTS];
+        let mut waits = false;
         for (i, (contact, &restitution)) in contacts.iter().zip(restitution).enumerate() {
             let turns = !contact.velocity.across.eq(0.0);
-            let slipping = Slipping::new(contact, restitution);
-            let mut impacts = OngoingImpacts::new(&slipping, rule.friction, rule.hypothesis);
+            let mut impacts = OngoingImpacts::new(contact, restitution, rule);
             impacts.stop();
-            let mut response = impacts.answer();
+            responses[i] = impacts.answer();
             if !turns.all() {
                 let straight = rule.respond::<S, false>(contact, restitution);
-                response = response.or(!turns, &straight);
+                responses[i] = responses[i].or(!turns, &straight);
             }
-            let open = (!impacts.course.over & turns).select(1.0, 0.0);
-            responses[i] = response;
-            if open.eq(1.0).any() {
-                pending[count] = Pending {
-                    slipping,
-                    open,
-                    response,
-                };
-                places[count] = i;
-                count += 1;
-            }
+            let left = !impacts.course.over & turns;
+            open[i] = left.select(1.0, 0.0);
+            waits |= left.any();
         }
-        if count > 0 {
-            queue::finish(&mut pending[..count], rule.friction, rule.hypothesis);
-            for (&i, pending) in places[..count].iter().zip(&pending) {
-                responses[i] = pending.response;
-            }
+        if waits {
+            queue::finish(rule, contacts, restitution, &open, responses);
         }
     }
 }
