@@ -2,9 +2,11 @@
 //!
 //! J. K. Salmon, M. A. Moraes, R. O. Dror and D. E. Shaw, *Parallel random numbers: as easy as 1, 2, 3*, Proc. SC11 (2011).
 
-use crate::simd::Level;
+use crate::simd::elementary::{ln, sincos_in_lanes};
+use crate::simd::{Level, Pack, one};
 use pulp::{Simd, WithSimd};
 use rand_philox::philox4x32_10;
+use std::f64::consts::TAU;
 
 /// A uniform number in [0, 1) with 53 random bits: Philox4x32-10, key = seed, counter = (particle, draw).
 pub fn uniform(seed: u64, particle: u64, draw: u32) -> f64 {
@@ -101,6 +103,84 @@ impl WithSimd for Row<'_> {
     }
 }
 
+/// What is asked for of two uniform numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NumberForm {
+    /// Themselves.
+    Uniform,
+    /// The other one, and sine and cosine of so much of a turn as the one in this place says.
+    Turn(usize),
+    /// [`normal_pair`].
+    Normal,
+}
+
+/// Pairs of uniform numbers in a form, as the first two numbers or as all three.
+pub fn formed(form: NumberForm, pairs: &[(f64, f64)]) -> Vec<[f64; 3]> {
+    let mut numbers: Vec<_> = pairs.iter().map(|&(a, b)| [a, b, 0.0]).collect();
+    let place = match form {
+        NumberForm::Uniform => return numbers,
+        NumberForm::Turn(place) => place,
+        NumberForm::Normal => 1,
+    };
+    Level::best().run(Formed {
+        normal: form == NumberForm::Normal,
+        place,
+        numbers: &mut numbers,
+    });
+    numbers
+}
+
+/// These forms, for many pairs at once.
+struct Formed<'a> {
+    normal: bool,
+    place: usize,
+    numbers: &'a mut [[f64; 3]],
+}
+
+impl WithSimd for Formed<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for some in self.numbers.chunks_mut(Pack::<S, 1>::WIDTH) {
+            let (mut others, mut turns) = (Pack::splat(simd, 0.0), Pack::splat(simd, 0.0));
+            for (lane, numbers) in some.iter().enumerate() {
+                others.as_mut_slice()[lane] = numbers[1 - self.place];
+                turns.as_mut_slice()[lane] = numbers[self.place];
+            }
+            let all = if self.normal {
+                let [first, second] = normals_in_lanes(others, turns);
+                [first, second, turns]
+            } else {
+                let (sine, cosine) = sincos_in_lanes(TAU * turns);
+                [others, sine, cosine]
+            };
+            for (lane, numbers) in some.iter_mut().enumerate() {
+                for (number, pack) in numbers.iter_mut().zip(&all) {
+                    *number = pack.as_slice()[lane];
+                }
+            }
+        }
+    }
+}
+
+/// Two normal numbers from two uniform ones in [0, 1), by G. E. P. Box and M. E. Muller (1958).
+#[inline(always)]
+pub fn normal_pair((size, turn): (f64, f64)) -> (f64, f64) {
+    let [first, second] = normals_in_lanes(one(size), one(turn));
+    (first.as_slice()[0], second.as_slice()[0])
+}
+
+#[inline(always)]
+fn normals_in_lanes<S: Simd>(mut size: Pack<S, 1>, turn: Pack<S, 1>) -> [Pack<S, 1>; 2] {
+    let (sine, cosine) = sincos_in_lanes(TAU * turn);
+    for number in size.as_mut_slice() {
+        *number = ln(1.0 - *number);
+    }
+    let size = (-2.0 * size).sqrt();
+    [size * sine, size * cosine]
+}
+
 #[inline(always)]
 fn unit(low: u32, high: u32) -> f64 {
     let bits = u64::from(low) | u64::from(high) << 32;
@@ -115,6 +195,7 @@ fn halves(x: u64) -> (u32, u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simd::elementary::sincos;
 
     /// The first two words of the generator's authors for counter and key 0 (`kat_vectors` of Random123): the second one is the upper half.
     #[test]
@@ -131,6 +212,27 @@ mod tests {
         of_candidates(7, first, &mut numbers);
         for (number, i) in numbers.into_iter().zip(first..) {
             assert_eq!(number, of_candidate(7, i, 0));
+        }
+    }
+
+    /// In every form many are what each is, and normal numbers those of Box and Muller.
+    #[test]
+    fn forms_are_what_each_is() {
+        let pairs: Vec<_> = (0..29).map(|i| pair(7, i)).collect();
+        let found = |form| formed(form, &pairs);
+        let turns = [found(NumberForm::Turn(0)), found(NumberForm::Turn(1))];
+        let (plain, normal) = (found(NumberForm::Uniform), found(NumberForm::Normal));
+        for (i, &(a, b)) in pairs.iter().enumerate() {
+            assert_eq!(plain[i], [a, b, 0.0]);
+            for (turns, other, turn) in [(&turns[0], b, a), (&turns[1], a, b)] {
+                let (sine, cosine) = sincos(TAU * turn);
+                assert_eq!(turns[i], [other, sine, cosine]);
+            }
+            let (x, y) = normal_pair((a, b));
+            assert_eq!(normal[i][..2], [x, y]);
+            let size = (-2.0 * (1.0 - a).ln()).sqrt();
+            let (sine, cosine) = (TAU * b).sin_cos();
+            assert!((x - size * sine).abs() < 1e-14 && (y - size * cosine).abs() < 1e-14);
         }
     }
 

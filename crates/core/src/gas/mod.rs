@@ -22,6 +22,7 @@ use crate::pair::{
 };
 use crate::random::{of_candidate, of_candidates, of_impact};
 use crate::simd::Level;
+use crate::simd::elementary::sincos;
 use crate::threads::{Monitor, Resources};
 use crate::{Error, memory};
 use moments::{Distributions, SpeciesSums, Whole};
@@ -681,6 +682,7 @@ impl<'a> Batch<'a> {
         let speed = u.norm();
         let direction = u / speed;
         let (square, around) = self.draw();
+        let around = sincos(TAU * around);
         let apart = approach(direction, direction.across(), square.sqrt(), around);
         (speed, apart)
     }

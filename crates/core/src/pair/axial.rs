@@ -11,7 +11,7 @@ use crate::contact::{BallGaps, INVISIBLE, RoundPart, RoundParts, TurningAxis};
 use crate::law::{Frictionless, Law, Rule, scattered};
 use crate::math::{Quaternion, UNITS, Vector, Vectors};
 use crate::shape::{Piece, PieceKind};
-use crate::simd::elementary::{sincos, sincos_in_lanes};
+use crate::simd::elementary::sincos_in_lanes;
 use crate::simd::{Mask, Pack};
 use pulp::{Simd, WithSimd};
 
@@ -180,6 +180,14 @@ struct Turned<S: Simd> {
 }
 
 impl<S: Simd> Turned<S> {
+    #[inline(always)]
+    fn none(simd: S) -> Self {
+        Self {
+            w: Pack::splat(simd, 1.0),
+            v: Vectors::splat(simd, Vector::default()),
+        }
+    }
+
     /// The same, and then turned about a unit vector by the angle of which sine and cosine of the half are given.
     #[inline(always)]
     fn then(self, about: Vectors<S, 1>, (sine, cosine): (Pack<S, 1>, Pack<S, 1>)) -> Self {
@@ -188,6 +196,52 @@ impl<S: Simd> Turned<S> {
             w: cosine * self.w - v.dot(self.v),
             v: self.v.mul_add(cosine, v.mul_add(self.w, v.cross(self.v))),
         }
+    }
+
+    /// The rotation by the second and then by this, to the bits of [`Quaternion`].
+    #[inline(always)]
+    fn times(self, b: Self) -> Self {
+        let a = self;
+        Self {
+            w: a.w * b.w - a.v.x * b.v.x - a.v.y * b.v.y - a.v.z * b.v.z,
+            v: Vectors {
+                x: a.w * b.v.x + a.v.x * b.w + a.v.y * b.v.z - a.v.z * b.v.y,
+                y: a.w * b.v.y + a.v.y * b.w + a.v.z * b.v.x - a.v.x * b.v.z,
+                z: a.w * b.v.z + a.v.z * b.w + a.v.x * b.v.y - a.v.y * b.v.x,
+            },
+        }
+    }
+
+    #[inline(always)]
+    fn normalized(self) -> Self {
+        let Self { w, v } = self;
+        let part = 1.0 / (w * w + v.x * v.x + v.y * v.y + v.z * v.z).sqrt();
+        Self {
+            w: part * w,
+            v: v.times(part),
+        }
+    }
+
+    /// A vector before the rotation, to the bits of [`Quaternion::rotate`] by the inverse.
+    #[inline(always)]
+    fn back(self, v: Vectors<S, 1>) -> Vectors<S, 1> {
+        let (w, q) = (self.w, self.v.times(-1.0));
+        let (a, b, c) = (
+            2.0 * (q.y * v.z - q.z * v.y),
+            2.0 * (q.z * v.x - q.x * v.z),
+            2.0 * (q.x * v.y - q.y * v.x),
+        );
+        Vectors {
+            x: v.x + (w * a + (q.y * c - q.z * b)),
+            y: v.y + (w * b + (q.z * a - q.x * c)),
+            z: v.z + (w * c + (q.x * b - q.y * a)),
+        }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, lane: usize, of: Quaternion) {
+        self.w.as_mut_slice()[lane] = of.w;
+        self.v.put(lane, Vector::new(of.x, of.y, of.z));
     }
 
     #[inline(always)]
@@ -207,10 +261,7 @@ impl<S: Simd> Line<S> {
         Self {
             axis: Vectors::splat(simd, UNITS[2]),
             precession: still,
-            turned: Turned {
-                w: Pack::splat(simd, 1.0),
-                v: still,
-            },
+            turned: Turned::none(simd),
             motion: [still; 3],
             rate: zero,
             bend: zero,
@@ -227,8 +278,7 @@ impl<S: Simd> Line<S> {
         self.axis.put(lane, state.attitude.rotate(UNITS[line.axis]));
         self.precession
             .put(lane, state.attitude.rotate(Vector::new(x, y, z)));
-        self.turned.w.as_mut_slice()[lane] = 1.0;
-        self.turned.v.put(lane, Vector::default());
+        self.turned.put(lane, Quaternion::IDENTITY);
     }
 
     /// Begins a flight in some lanes.
@@ -627,40 +677,18 @@ impl<S: Simd> Encountering<S> {
         pushed.mul_add(part, state.velocity.mul_add(clock, state.position))
     }
 
-    /// A body of a lane at the end of the encounter.
-    #[inline(always)]
-    fn body(&self, lane: usize, i: usize, pair: &AxialPair<'_, '_>, from: &Approach) -> FreeBody {
-        let (state, of, line) = (&from.states[i], &pair.lines[i], &self.lines[i]);
-        let part = [1.0, -1.0][i] * pair.bodies[i].inverse_mass;
-        let own = state.spin.parts()[of.axis];
-        let time = from.passed[i] + self.clock.as_slice()[lane];
-        let (sine, cosine) = sincos(0.5 * own * (1.0 - of.ratio) * time);
-        let about = UNITS[of.axis] * sine;
-        let rolled = Quaternion::new(cosine, about.x, about.y, about.z);
-        let attitude = (line.turned.lane(lane) * (state.attitude * rolled)).normalized();
-        let mut spin = attitude
-            .inverse()
-            .rotate(line.precession.lane(lane))
-            .parts();
-        spin[of.axis] = own;
-        let [x, y, z] = spin;
-        FreeBody {
-            position: self.place(lane, i, pair, from),
-            velocity: self.impulse.lane(lane).mul_add(part, state.velocity),
-            attitude,
-            spin: Vector::new(x, y, z),
-        }
-    }
-
-    /// The end of the encounter in a lane.
+    /// The end of the encounter in a lane, with attitudes and spins as they were before it.
     #[inline(always)]
     fn end(&self, lane: usize, pair: &AxialPair<'_, '_>, from: &Approach) -> Outcome<FreeBody> {
         let (clock, contacts) = (self.clock.as_slice()[lane], self.contacts.as_slice()[lane]);
+        let mut states = from.states;
+        for (i, state) in states.iter_mut().enumerate() {
+            let part = [1.0, -1.0][i] * pair.bodies[i].inverse_mass;
+            state.position = self.place(lane, i, pair, from);
+            state.velocity = self.impulse.lane(lane).mul_add(part, state.velocity);
+        }
         Outcome {
-            states: [
-                self.body(lane, 0, pair, from),
-                self.body(lane, 1, pair, from),
-            ],
+            states,
             time: clock,
             contacts: contacts as u64,
             ending: if contacts > 0.0 {
@@ -673,6 +701,91 @@ impl<S: Simd> Encountering<S> {
     }
 }
 
+/// The rotation of bodies whose encounters have ended, one in each lane: it is found for as many as there are lanes at once.
+struct EndedRotations<S: Simd> {
+    count: usize,
+    jobs: [usize; MOST_LANES],
+    bodies: [EndedRotation<S>; 2],
+}
+
+/// Of one of both bodies: its attitude at first, its rotation since then but for that about its own axis, **Λ**/J, the spin about the axis, and the time.
+#[derive(Clone, Copy)]
+struct EndedRotation<S: Simd> {
+    attitude: Turned<S>,
+    turned: Turned<S>,
+    precession: Vectors<S, 1>,
+    own: Pack<S, 1>,
+    time: Pack<S, 1>,
+}
+
+impl<S: Simd> EndedRotations<S> {
+    #[inline(always)]
+    fn none(simd: S) -> Self {
+        let zero = Pack::splat(simd, 0.0);
+        let body = EndedRotation {
+            attitude: Turned::none(simd),
+            turned: Turned::none(simd),
+            precession: Vectors::splat(simd, Vector::default()),
+            own: zero,
+            time: zero,
+        };
+        Self {
+            count: 0,
+            jobs: [0; MOST_LANES],
+            bodies: [body; 2],
+        }
+    }
+
+    /// Adds those of a lane.
+    #[inline(always)]
+    fn add(
+        &mut self,
+        all: &Encountering<S>,
+        lane: usize,
+        job: usize,
+        run: &AxialEncounters<'_, '_, '_>,
+    ) {
+        let (to, from) = (self.count, &run.approaches[job]);
+        self.jobs[to] = job;
+        for i in 0..2 {
+            let (body, line, state) = (&mut self.bodies[i], &all.lines[i], &from.states[i]);
+            body.attitude.put(to, state.attitude);
+            body.turned.put(to, line.turned.lane(lane));
+            body.precession.put(to, line.precession.lane(lane));
+            body.own.as_mut_slice()[to] = state.spin.parts()[run.pair.lines[i].axis];
+            body.time.as_mut_slice()[to] = from.passed[i] + all.clock.as_slice()[lane];
+        }
+        self.count += 1;
+    }
+
+    /// Finds all of them.
+    #[inline(always)]
+    fn find(&mut self, pair: &AxialPair<'_, '_>, ends: &mut [Option<End>]) {
+        for i in 0..2 {
+            let (line, body) = (&pair.lines[i], &self.bodies[i]);
+            let axis = Vectors::splat(body.own.simd(), UNITS[line.axis]);
+            let (sine, cosine) = sincos_in_lanes(0.5 * body.own * (1.0 - line.ratio) * body.time);
+            let roll = Turned {
+                w: cosine,
+                v: axis.times(sine),
+            };
+            let rolled = body.attitude.times(roll);
+            let attitude = body.turned.times(rolled).normalized();
+            let spins = attitude.back(body.precession);
+            for lane in 0..self.count {
+                if let Some(Ok(end)) = &mut ends[self.jobs[lane]] {
+                    let mut spin = spins.lane(lane).parts();
+                    spin[line.axis] = body.own.as_slice()[lane];
+                    let [x, y, z] = spin;
+                    end.states[i].attitude = attitude.lane(lane);
+                    end.states[i].spin = Vector::new(x, y, z);
+                }
+            }
+        }
+        self.count = 0;
+    }
+}
+
 impl WithSimd for AxialEncounters<'_, '_, '_> {
     type Output = ();
 
@@ -681,6 +794,7 @@ impl WithSimd for AxialEncounters<'_, '_, '_> {
         let pair = self.pair;
         let reach = pair.reach;
         let mut all = Encountering::none(simd);
+        let mut rotations = EndedRotations::none(simd);
         let mut jobs = [0; MOST_LANES];
         let mut next = 0;
         let none = Mask::splat(simd, false);
@@ -705,6 +819,7 @@ impl WithSimd for AxialEncounters<'_, '_, '_> {
                 }
             }
             if !active.any() {
+                rotations.find(pair, self.ends);
                 return;
             }
             if fresh.any() {
@@ -758,6 +873,10 @@ impl WithSimd for AxialEncounters<'_, '_, '_> {
             while let Some(lane) = take(&mut lanes) {
                 let job = jobs[lane];
                 self.ends[job] = Some(Ok(all.end(lane, pair, &self.approaches[job])));
+                rotations.add(&all, lane, job, &self);
+                if rotations.count == Pack::<S, 1>::WIDTH {
+                    rotations.find(pair, self.ends);
+                }
             }
             active = active & !(passed | hard);
             fresh = touched & active;

@@ -204,7 +204,13 @@ impl FreeBody {
     /// Its kinetic energy.
     #[inline(always)]
     pub fn energy(&self, body: &Partner) -> f64 {
-        body.translational_energy(self.velocity) + 0.5 * body.top.twice_energy(self.spin)
+        body.translational_energy(self.velocity) + self.rotational_energy(body)
+    }
+
+    /// That of its rotation.
+    #[inline(always)]
+    pub fn rotational_energy(&self, body: &Partner) -> f64 {
+        0.5 * body.top.twice_energy(self.spin)
     }
 
     /// Turns it as it does in a time.

@@ -243,6 +243,8 @@ impl PairTable {
 struct Encountered<'a> {
     /// The bodies before.
     before: &'a [PairState; 2],
+    /// Before and after, the energies of translation and of rotation of both.
+    energies: [[[f64; 2]; 2]; 2],
     /// The end.
     outcome: Outcome,
     /// The first contact, if there was one.
@@ -332,17 +334,16 @@ impl Encounters<'_> {
     fn write(&self, found: &Encountered<'_>, row: &mut [f64; ALL_NUMBERS]) {
         let Encountered {
             before,
+            energies: [[translation, rotation], [translation_after, rotation_after]],
             outcome,
             first,
-        } = found;
+        } = *found;
         let after = &outcome.states;
         let [one, two] = self.bodies;
         let relative = |states: &[PairState; 2]| states[0].velocity - states[1].velocity;
         let (u, later) = (relative(before), relative(after));
         let sizes = u.norm() * later.norm();
         let (sine, cosine) = (u.cross(later).norm() / sizes, u.dot(later) / sizes);
-        let [translation, rotation] = self.energies(before);
-        let [translation_after, rotation_after] = self.energies(after);
         let reduced = 1.0 / (one.inverse_mass + two.inverse_mass);
         let energy = |u: Vector, [a, b]: [f64; 2]| 0.5 * reduced * u.dot(u) + a + b;
         let (speed, centre, coefficients) = match first {
@@ -389,16 +390,13 @@ impl Encounters<'_> {
 
     /// The energies of translation and of rotation of both bodies.
     #[inline(always)]
-    fn energies(&self, [one, two]: &[PairState; 2]) -> [[f64; 2]; 2] {
+    fn energies(&self, [one, two]: &[FreeBody; 2]) -> [[f64; 2]; 2] {
         let [first, second] = self.bodies;
         let translation = [
             first.translational_energy(one.velocity),
             second.translational_energy(two.velocity),
         ];
-        let rotation = [
-            first.rotational_energy(one.attitude, one.spin),
-            second.rotational_energy(two.attitude, two.spin),
-        ];
+        let rotation = [one.rotational_energy(first), two.rotational_energy(second)];
         [translation, rotation]
     }
 }
@@ -466,8 +464,14 @@ impl WithSimd for EncounterBlock<'_, '_, '_, '_> {
         let (mut rows, mut numbers) = (Vec::new(), [0.0; ALL_NUMBERS]);
         for (row, (end, before)) in ends.zip(&before).enumerate() {
             let hits = &mut hits[row];
-            let outcome = match end {
-                Ok(outcome) => outcome.given(bodies),
+            let (energies, outcome) = match end {
+                Ok(outcome) => {
+                    let energies = [
+                        encounters.energies(&approaches[row].states),
+                        encounters.energies(&outcome.states),
+                    ];
+                    (energies, outcome.given(bodies))
+                }
                 Err(trouble) => {
                     let trouble = trouble.clone();
                     return Err(failed(law, trouble, (seed, first + row as u64), hits.len()));
@@ -476,6 +480,7 @@ impl WithSimd for EncounterBlock<'_, '_, '_, '_> {
             hits.truncate(outcome.contacts as usize);
             let found = Encountered {
                 before,
+                energies,
                 outcome,
                 first: hits.first().copied(),
             };

@@ -7,17 +7,15 @@
 use super::partner::{PairState, Partner};
 use crate::Error;
 use crate::math::{Quaternion, Vector};
-use crate::random::of_encounters;
-use crate::simd::elementary::{ln, sincos};
+use crate::random::{NumberForm, formed, normal_pair, of_encounters};
+use crate::simd::elementary::ln;
 use std::f64::consts::{PI, TAU};
 
-/// Three normal numbers from uniform ones in [0, 1), by G. E. P. Box and M. E. Muller (1958).
+/// Three normal numbers from uniform ones in [0, 1).
 #[inline(always)]
-pub(crate) fn normals([(a, b), (c, d)]: [(f64, f64); 2]) -> [f64; 3] {
-    let ((s, t), (u, _)) = (sincos(TAU * b), sincos(TAU * d));
-    let size = |x: f64| (-2.0 * ln(1.0 - x)).sqrt();
-    let [p, q] = [size(a), size(c)];
-    [p * s, p * t, q * u]
+pub(crate) fn normals([first, second]: [(f64, f64); 2]) -> [f64; 3] {
+    let ((x, y), (z, _)) = (normal_pair(first), normal_pair(second));
+    [x, y, z]
 }
 
 /// The velocities with which two bodies meet.
@@ -148,13 +146,12 @@ impl Encounters<'_> {
     fn in_space(&self, draws: &mut Draws<'_>) -> ([Vector; 2], [Vector; 2]) {
         let [one, two] = [self.bodies[0].inverse_mass, self.bodies[1].inverse_mass];
         let reach = self.reach();
-        let (height, azimuth) = draws.pair();
+        let (height, (sine, cosine)) = draws.turn(1);
         let level = (1.0 - (2.0 * height - 1.0) * (2.0 * height - 1.0))
             .max(0.0)
             .sqrt();
-        let (sine, cosine) = sincos(TAU * azimuth);
         let u = Vector::new(level * cosine, level * sine, 2.0 * height - 1.0);
-        let (square, around) = draws.pair();
+        let (square, around) = draws.turn(1);
         let b = match self.impact_parameter {
             Some(b) => b / reach,
             None => square.sqrt(),
@@ -205,11 +202,10 @@ impl Encounters<'_> {
 }
 
 /// The place on the unit sphere at which a body comes in along **u**, at the distance b from the parallel through the centre; `across` is a unit vector
-/// normal to **u**, from which the azimuth counts, in turns.
+/// normal to **u**, from which the azimuth counts, of which sine and cosine are given.
 #[inline(always)]
-pub(crate) fn approach(u: Vector, across: Vector, b: f64, azimuth: f64) -> Vector {
+pub(crate) fn approach(u: Vector, across: Vector, b: f64, (s, c): (f64, f64)) -> Vector {
     let second = u.cross(across);
-    let (s, c) = sincos(TAU * azimuth);
     let back = (1.0 - b * b).max(0.0).sqrt();
     across * (b * c) + second * (b * s) - u * back
 }
@@ -219,7 +215,7 @@ pub(crate) struct DrawRows {
     seed: u64,
     first: u64,
     rows: usize,
-    numbers: Vec<Vec<(f64, f64)>>,
+    numbers: Vec<Vec<[f64; 3]>>,
 }
 
 impl DrawRows {
@@ -232,7 +228,7 @@ impl DrawRows {
         }
     }
 
-    /// Those of one of them.
+    /// Those of one of them, each of which asks for the same forms.
     #[inline(always)]
     pub fn row(&mut self, row: usize) -> Draws<'_> {
         Draws {
@@ -243,15 +239,11 @@ impl DrawRows {
     }
 
     #[cold]
-    fn fill(&mut self) {
-        let mut numbers = vec![(0.0, 0.0); self.rows];
-        of_encounters(
-            self.seed,
-            self.first,
-            self.numbers.len() as u32,
-            &mut numbers,
-        );
-        self.numbers.push(numbers);
+    fn fill(&mut self, form: NumberForm) {
+        let mut pairs = vec![(0.0, 0.0); self.rows];
+        let draw = self.numbers.len() as u32;
+        of_encounters(self.seed, self.first, draw, &mut pairs);
+        self.numbers.push(formed(form, &pairs));
     }
 }
 
@@ -264,18 +256,32 @@ pub(crate) struct Draws<'a> {
 
 impl Draws<'_> {
     #[inline(always)]
-    pub fn pair(&mut self) -> (f64, f64) {
+    fn next(&mut self, form: NumberForm) -> [f64; 3] {
         if self.draw == self.all.numbers.len() {
-            self.all.fill();
+            self.all.fill(form);
         }
         self.draw += 1;
         self.all.numbers[self.draw - 1][self.row]
     }
 
+    #[inline(always)]
+    fn pair(&mut self) -> (f64, f64) {
+        let [first, second, _] = self.next(NumberForm::Uniform);
+        (first, second)
+    }
+
+    /// A uniform number, and sine and cosine of a uniform angle, that of the number at this place of a pair.
+    #[inline(always)]
+    fn turn(&mut self, place: usize) -> (f64, (f64, f64)) {
+        let [other, sine, cosine] = self.next(NumberForm::Turn(place));
+        (other, (sine, cosine))
+    }
+
     /// Three normal numbers.
     #[inline(always)]
     pub fn normals(&mut self) -> [f64; 3] {
-        normals([self.pair(), self.pair()])
+        let ([x, y, _], [z, ..]) = (self.next(NumberForm::Normal), self.next(NumberForm::Normal));
+        [x, y, z]
     }
 
     /// ω, in the principal axes, of a Maxwellian with a temperature about each of them.
@@ -290,8 +296,7 @@ impl Draws<'_> {
     /// An attitude, uniform on SO(3): K. Shoemake, *Uniform random rotations*, Graphics Gems III (1992).
     #[inline(always)]
     pub fn attitude(&mut self) -> Quaternion {
-        let ((a, b), (c, _)) = (self.pair(), self.pair());
-        let ((s, t), (u, v)) = (sincos(TAU * b), sincos(TAU * c));
+        let ((a, (s, t)), (_, (u, v))) = (self.turn(1), self.turn(0));
         let (p, q) = ((1.0 - a).sqrt(), a.sqrt());
         Quaternion::new(p * s, p * t, q * u, q * v).normalized()
     }

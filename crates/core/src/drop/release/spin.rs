@@ -1,8 +1,8 @@
 //! Initial conditions: the angular velocity at release.
 
 use crate::math::{Quaternion, Vector};
-use crate::random::uniform;
-use crate::simd::elementary::{ln, sincos};
+use crate::random::{normal_pair, uniform};
+use crate::simd::elementary::sincos;
 use crate::{Error, Value};
 use std::f64::consts::TAU;
 
@@ -188,16 +188,9 @@ impl Spin<'_> {
 
 /// Three independent Gaussian numbers with mean 0 and variance 1.
 fn normals(seed: u64, particle: u64) -> [f64; 3] {
-    let normal = |size, direction| {
-        let (size, turn) = (
-            uniform(seed, particle, size),
-            uniform(seed, particle, direction),
-        );
-        let (b, a) = sincos(TAU * turn);
-        let size = (-2.0 * ln(1.0 - size)).sqrt();
-        (size * a, size * b)
-    };
-    let (first, second) = normal(RATE, AROUND);
-    let (third, _) = normal(UPWARD, LENGTHWISE);
+    let uniform = |draw| uniform(seed, particle, draw);
+    let normal = |size, direction| normal_pair((uniform(size), uniform(direction)));
+    let (second, first) = normal(RATE, AROUND);
+    let (_, third) = normal(UPWARD, LENGTHWISE);
     [first, second, third]
 }
