@@ -48,6 +48,7 @@ FOUR = rs.Clump(
 )
 ELLIPSOID = rs.Ellipsoid(semi_axes=(R, 0.8 * R, 0.6 * R))
 DIE = rs.Box(R, R, R)
+BOX = rs.Box(0.8 * R, R, 1.2 * R)
 ROUGH: dict[str, Any] = {"radius": R, "asperity_radius": 1e-3 * R}
 
 
@@ -186,6 +187,7 @@ FRICTION = tuple(
     for name, target, body in (
         ("triaxial ellipsoid", 2.5, ELLIPSOID),
         ("clump of 4", 3.5, FOUR),
+        ("box", 4.0, BOX),
         ("die", 4.0, DIE),
         ("spheroid 0.8", 6.0, spheroid(0.8)),
     )
