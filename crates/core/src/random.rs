@@ -117,23 +117,18 @@ pub enum NumberForm {
 /// Pairs of uniform numbers in a form, as the first two numbers or as all three.
 pub fn formed(form: NumberForm, pairs: &[(f64, f64)]) -> Vec<[f64; 3]> {
     let mut numbers: Vec<_> = pairs.iter().map(|&(a, b)| [a, b, 0.0]).collect();
-    let place = match form {
-        NumberForm::Uniform => return numbers,
-        NumberForm::Turn(place) => place,
-        NumberForm::Normal => 1,
-    };
-    Level::best().run(Formed {
-        normal: form == NumberForm::Normal,
-        place,
-        numbers: &mut numbers,
-    });
+    if form != NumberForm::Uniform {
+        Level::best().run(Formed {
+            form,
+            numbers: &mut numbers,
+        });
+    }
     numbers
 }
 
 /// These forms, for many pairs at once.
 struct Formed<'a> {
-    normal: bool,
-    place: usize,
+    form: NumberForm,
     numbers: &'a mut [[f64; 3]],
 }
 
@@ -142,13 +137,17 @@ impl WithSimd for Formed<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
+        let place = match self.form {
+            NumberForm::Turn(place) => place,
+            _ => 1,
+        };
         for some in self.numbers.chunks_mut(Pack::<S, 1>::WIDTH) {
             let (mut others, mut turns) = (Pack::splat(simd, 0.0), Pack::splat(simd, 0.0));
             for (lane, numbers) in some.iter().enumerate() {
-                others.as_mut_slice()[lane] = numbers[1 - self.place];
-                turns.as_mut_slice()[lane] = numbers[self.place];
+                others.as_mut_slice()[lane] = numbers[1 - place];
+                turns.as_mut_slice()[lane] = numbers[place];
             }
-            let all = if self.normal {
+            let all = if self.form == NumberForm::Normal {
                 let [first, second] = normals_in_lanes(others, turns);
                 [first, second, turns]
             } else {

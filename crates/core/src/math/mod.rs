@@ -4,7 +4,7 @@
 pub(crate) mod flat;
 pub(crate) mod gaussian;
 pub(crate) mod nodal;
-mod quaternion;
+pub(crate) mod quaternion;
 pub(crate) mod roots;
 mod symmetric;
 mod vector;

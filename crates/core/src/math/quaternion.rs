@@ -1,7 +1,7 @@
 //! Rotations as unit quaternions.
 
 use super::Vector;
-use std::ops::Mul;
+use std::ops::{Add, Mul, Sub};
 
 /// A quaternion w + x**i** + y**j** + z**k**. One of length 1 is the rotation by 2 arccos w about (x, y, z), and as an attitude takes the
 /// axes of the body to those of space.
@@ -43,7 +43,7 @@ impl Quaternion {
     #[inline(always)]
     pub fn normalized(self) -> Self {
         let Self { w, x, y, z } = self;
-        let part = 1.0 / (w * w + x * x + y * y + z * z).sqrt();
+        let part = 1.0 / square(self.parts()).sqrt();
         Self::new(part * w, part * x, part * y, part * z)
     }
 
@@ -66,21 +66,55 @@ impl Quaternion {
         )
     }
 
-    /// A vector of the body in the axes of space: **v** + 2w **q** × **v** + 2**q** × (**q** × **v**).
+    /// A vector of the body in the axes of space.
     #[inline(always)]
     pub fn rotate(self, v: Vector) -> Vector {
-        let Self { w, x, y, z } = self;
-        let (a, b, c) = (
-            2.0 * (y * v.z - z * v.y),
-            2.0 * (z * v.x - x * v.z),
-            2.0 * (x * v.y - y * v.x),
-        );
-        Vector::new(
-            v.x + (w * a + (y * c - z * b)),
-            v.y + (w * b + (z * a - x * c)),
-            v.z + (w * c + (x * b - y * a)),
-        )
+        let [x, y, z] = rotated(self.parts(), v.parts());
+        Vector::new(x, y, z)
     }
+}
+
+/// A part of a quaternion: a number, or one in each lane.
+pub(crate) trait Part:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+}
+
+impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Part for T {}
+
+/// The product of two quaternions (w, x, y, z): the rotation by the second and then by the first.
+#[inline(always)]
+pub(crate) fn product<T: Part>([aw, ax, ay, az]: [T; 4], [bw, bx, by, bz]: [T; 4]) -> [T; 4] {
+    [
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by + ay * bw + az * bx - ax * bz,
+        aw * bz + az * bw + ax * by - ay * bx,
+    ]
+}
+
+/// The square of its length.
+#[inline(always)]
+pub(crate) fn square<T: Part>([w, x, y, z]: [T; 4]) -> T {
+    w * w + x * x + y * y + z * z
+}
+
+/// A vector after the rotation by a unit quaternion: **v** + 2w **q** × **v** + 2**q** × (**q** × **v**).
+#[inline(always)]
+pub(crate) fn rotated<T: Part>([w, x, y, z]: [T; 4], [vx, vy, vz]: [T; 3]) -> [T; 3]
+where
+    f64: Mul<T, Output = T>,
+{
+    let (a, b, c) = (
+        2.0 * (y * vz - z * vy),
+        2.0 * (z * vx - x * vz),
+        2.0 * (x * vy - y * vx),
+    );
+    [
+        vx + (w * a + (y * c - z * b)),
+        vy + (w * b + (z * a - x * c)),
+        vz + (w * c + (x * b - y * a)),
+    ]
 }
 
 /// A sum, and what it has lost by rounding: D. E. Knuth, *The Art of Computer Programming* 2, theorem 4.2.2 B.
@@ -97,12 +131,7 @@ impl Mul for Quaternion {
 
     #[inline(always)]
     fn mul(self, b: Self) -> Self {
-        let a = self;
-        Self::new(
-            a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
-            a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-            a.w * b.y + a.y * b.w + a.z * b.x - a.x * b.z,
-            a.w * b.z + a.z * b.w + a.x * b.y - a.y * b.x,
-        )
+        let [w, x, y, z] = product(self.parts(), b.parts());
+        Self::new(w, x, y, z)
     }
 }

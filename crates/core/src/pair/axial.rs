@@ -9,6 +9,7 @@ use super::encounter::{Chance, End, Ending, Hit, OnHit, Outcome, UNRESOLVED};
 use super::partner::{Approach, FreeBody, Partner};
 use crate::contact::{BallGaps, INVISIBLE, RoundPart, RoundParts, TurningAxis};
 use crate::law::{Frictionless, Law, Rule, scattered};
+use crate::math::quaternion::{product, rotated, square};
 use crate::math::{Quaternion, UNITS, Vector, Vectors};
 use crate::shape::{Piece, PieceKind};
 use crate::simd::elementary::sincos_in_lanes;
@@ -198,44 +199,40 @@ impl<S: Simd> Turned<S> {
         }
     }
 
-    /// The rotation by the second and then by this, to the bits of [`Quaternion`].
     #[inline(always)]
-    fn times(self, b: Self) -> Self {
-        let a = self;
+    fn parts(self) -> [Pack<S, 1>; 4] {
+        [self.w, self.v.x, self.v.y, self.v.z]
+    }
+
+    #[inline(always)]
+    fn of([w, x, y, z]: [Pack<S, 1>; 4]) -> Self {
         Self {
-            w: a.w * b.w - a.v.x * b.v.x - a.v.y * b.v.y - a.v.z * b.v.z,
-            v: Vectors {
-                x: a.w * b.v.x + a.v.x * b.w + a.v.y * b.v.z - a.v.z * b.v.y,
-                y: a.w * b.v.y + a.v.y * b.w + a.v.z * b.v.x - a.v.x * b.v.z,
-                z: a.w * b.v.z + a.v.z * b.w + a.v.x * b.v.y - a.v.y * b.v.x,
-            },
+            w,
+            v: Vectors { x, y, z },
         }
+    }
+
+    /// The rotation by the second and then by this.
+    #[inline(always)]
+    fn times(self, second: Self) -> Self {
+        Self::of(product(self.parts(), second.parts()))
     }
 
     #[inline(always)]
     fn normalized(self) -> Self {
-        let Self { w, v } = self;
-        let part = 1.0 / (w * w + v.x * v.x + v.y * v.y + v.z * v.z).sqrt();
+        let part = 1.0 / square(self.parts()).sqrt();
         Self {
-            w: part * w,
-            v: v.times(part),
+            w: self.w * part,
+            v: self.v.times(part),
         }
     }
 
-    /// A vector before the rotation, to the bits of [`Quaternion::rotate`] by the inverse.
+    /// A vector before the rotation.
     #[inline(always)]
     fn back(self, v: Vectors<S, 1>) -> Vectors<S, 1> {
-        let (w, q) = (self.w, self.v.times(-1.0));
-        let (a, b, c) = (
-            2.0 * (q.y * v.z - q.z * v.y),
-            2.0 * (q.z * v.x - q.x * v.z),
-            2.0 * (q.x * v.y - q.y * v.x),
-        );
-        Vectors {
-            x: v.x + (w * a + (q.y * c - q.z * b)),
-            y: v.y + (w * b + (q.z * a - q.x * c)),
-            z: v.z + (w * c + (q.x * b - q.y * a)),
-        }
+        let back = self.v.times(-1.0);
+        let [x, y, z] = rotated([self.w, back.x, back.y, back.z], [v.x, v.y, v.z]);
+        Vectors { x, y, z }
     }
 
     #[inline(always)]
