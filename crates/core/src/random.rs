@@ -45,15 +45,20 @@ pub fn of_asperity(seed: u64, asperity: u64, draw: u32) -> (f64, f64) {
 
 /// Two uniform numbers in [0, 1) for a draw of some encounters of two bodies, or particles of a gas: counter = (encounter, draw, 4).
 pub fn of_encounters(seed: u64, first: u64, draw: u32, numbers: &mut [(f64, f64)]) {
-    in_row(seed, first, [draw, 4], numbers);
+    in_row(seed, first.., [draw, 4], numbers);
 }
 
 /// Two uniform numbers in [0, 1) for some candidates of a gas: counter = (candidate, 0, 5).
 pub fn of_candidates(seed: u64, first: u64, numbers: &mut [(f64, f64)]) {
-    in_row(seed, first, [0, 5], numbers);
+    in_row(seed, first.., [0, 5], numbers);
 }
 
-/// Two uniform numbers in [0, 1) for a draw, from 1 on, of the encounter of a candidate: counter = (candidate, draw, 5).
+/// Two uniform numbers in [0, 1) for a draw, from 1 on, of the encounter of a candidate, of some of them: counter = (candidate, draw, 5).
+pub fn of_some_candidates(seed: u64, candidates: &[u64], draw: u32, numbers: &mut [(f64, f64)]) {
+    in_row(seed, candidates.iter().copied(), [draw, 5], numbers);
+}
+
+/// The same for one.
 #[inline(always)]
 pub fn of_candidate(seed: u64, candidate: u64, draw: u32) -> (f64, f64) {
     let (low, high) = halves(candidate);
@@ -62,8 +67,8 @@ pub fn of_candidate(seed: u64, candidate: u64, draw: u32) -> (f64, f64) {
     (unit(a, b), unit(c, d))
 }
 
-/// Two numbers each for counters that begin with successive numbers and end with the same two words.
-fn in_row(seed: u64, first: u64, rest: [u32; 2], numbers: &mut [(f64, f64)]) {
+/// Two numbers each for counters that begin with these numbers and end with the same two words.
+fn in_row(seed: u64, first: impl Iterator<Item = u64>, rest: [u32; 2], numbers: &mut [(f64, f64)]) {
     Level::best().run(Row {
         seed,
         first,
@@ -73,32 +78,34 @@ fn in_row(seed: u64, first: u64, rest: [u32; 2], numbers: &mut [(f64, f64)]) {
 }
 
 /// These numbers, for many counters at once.
-struct Row<'a> {
+struct Row<'a, I> {
     seed: u64,
-    first: u64,
+    first: I,
     rest: [u32; 2],
     numbers: &'a mut [(f64, f64)],
 }
 
-impl WithSimd for Row<'_> {
+impl<I: Iterator<Item = u64>> WithSimd for Row<'_, I> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         const BLOCK: usize = 64;
         let (key, [third, last]) = (halves(self.seed), self.rest);
-        let mut words = [[0; 4]; BLOCK];
+        let (mut words, mut counters) = ([[0; 4]; BLOCK], [0; BLOCK]);
         let mut first = self.first;
         for some in self.numbers.chunks_mut(BLOCK) {
+            for (counter, number) in counters[..some.len()].iter_mut().zip(&mut first) {
+                *counter = number;
+            }
             // By itself, this loop is compiled for vectors.
-            for (words, number) in words[..some.len()].iter_mut().zip(first..) {
+            for (words, &number) in words[..some.len()].iter_mut().zip(&counters) {
                 let (low, high) = halves(number);
                 *words = philox4x32_10([low, high, third, last], [key.0, key.1]);
             }
             for (pair, &[a, b, c, d]) in some.iter_mut().zip(&words) {
                 *pair = (unit(a, b), unit(c, d));
             }
-            first += BLOCK as u64;
         }
     }
 }
@@ -211,6 +218,11 @@ mod tests {
         of_candidates(7, first, &mut numbers);
         for (number, i) in numbers.into_iter().zip(first..) {
             assert_eq!(number, of_candidate(7, i, 0));
+        }
+        let some: Vec<_> = (0..150).map(|i| i * i).collect();
+        of_some_candidates(7, &some, 3, &mut numbers);
+        for (number, i) in numbers.into_iter().zip(some) {
+            assert_eq!(number, of_candidate(7, i, 3));
         }
     }
 

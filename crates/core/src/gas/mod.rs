@@ -10,6 +10,7 @@
 //! the power that each particle receives (D. R. M. Williams and F. C. MacKintosh, Phys. Rev. E 54, R9 (1996)). Between encounters nothing else
 //! happens to a velocity, so that this is exact if it is drawn, for the time that has passed, whenever the velocity is asked for.
 
+mod meeting;
 mod moments;
 
 pub use moments::{BIN, BINS, GAS_KIND, GAS_WHOLE};
@@ -17,14 +18,14 @@ pub use moments::{BIN, BINS, GAS_KIND, GAS_WHOLE};
 use crate::law::Law;
 use crate::math::{Quaternion, Vector};
 use crate::pair::{
-    Approach, DrawRows, Ending, Follower, FreeBody, Outcome, PairState, Partner, Trouble, approach,
-    failed, normals,
+    Approach, DrawRows, Ending, Follower, FreeBody, Outcome, PairState, Partner, Trouble, failed,
+    normals,
 };
 use crate::random::{of_candidate, of_candidates, of_impact};
 use crate::simd::Level;
-use crate::simd::elementary::sincos;
 use crate::threads::{Monitor, Resources};
 use crate::{Error, memory};
+use meeting::{Candidate, Candidates, Meeting, bound};
 use moments::{Distributions, SpeciesSums, Whole};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
@@ -246,8 +247,8 @@ struct Batch<'a> {
     number: usize,
     /// By themselves: many candidates are refused for which nothing else is asked.
     velocities: Vec<Vector>,
-    /// No less than the speed of each over the majorant of u, or infinite while it takes part in an encounter that is not followed yet. They stay in the
-    /// caches, and most candidates are refused by them alone.
+    /// No less than the speed of each over the majorant of u, or infinite while it is of a candidate that waits. They stay in the caches, and most
+    /// candidates are refused by them alone.
     bounds: Vec<f32>,
     rotations: Vec<ParticleRotation>,
     /// The time up to which each has been heated, if they are.
@@ -261,9 +262,9 @@ struct Batch<'a> {
     whole: Whole,
     /// Candidates so far, and a row of [`AHEAD`] of which the next is one.
     candidates: u64,
-    ahead: Vec<Candidate>,
-    /// Other draws since the last candidate.
-    drawn: u32,
+    ahead: Vec<([usize; 2], f64)>,
+    /// The cross-section of each two kinds over the largest.
+    sections: Vec<f64>,
     /// The majorant of u, the time until which it holds, and candidates since it was found.
     fastest: f64,
     until: f64,
@@ -272,37 +273,33 @@ struct Batch<'a> {
     slowest: f64,
     /// Looks so far.
     rows: Vec<f64>,
-    /// Encounters that are not followed yet, for each two kinds, and their number.
-    waiting: Vec<PendingEncounters>,
+    /// Candidates that are not decided yet, for each two kinds, and their number.
+    waiting: Vec<Waiting>,
     waits: usize,
 }
 
-/// Encounters of two kinds that are followed together: each two particles, the number of the candidate, and the time.
+/// Candidates of two kinds that are decided and followed together, those of them that meet, and from where.
 #[derive(Default)]
-struct PendingEncounters {
-    pairs: Vec<([usize; 2], u64, f64)>,
+struct Waiting {
+    candidates: Vec<Candidate>,
+    meetings: Vec<Meeting>,
     approaches: Vec<Approach>,
 }
 
-/// Two particles that may meet, and a number to decide.
-#[derive(Clone, Copy)]
-struct Candidate {
-    pair: [usize; 2],
-    chance: f64,
-}
-
-/// What is more than the rounding of a bound and of the sum of two.
-const ROUNDED: f32 = 1.0 + 8.0 * f32::EPSILON;
 /// Candidates that are drawn at once: what they need of memory is fetched at once, too.
 const AHEAD: u64 = 64;
-/// Most encounters that wait to be followed together.
-const TOGETHER: usize = 64;
+/// Most candidates that wait.
+const TOGETHER: usize = 128;
+/// The first draws for the line of an encounter, and then for phases; for the noise on each of its bodies; and on all particles after it.
+const LINE: u32 = 1;
+const HEATED: [u32; 2] = [4, 6];
+const ALL_HEATED: u32 = 8;
 
 /// Particles whose random numbers are drawn at once at the beginning.
 const DRAWN: usize = 256;
 
 /// Numbers of a batch in a store beside its looks and its particles, and of the rotation of a particle.
-const NUMBERS: usize = 10 + GAS_WHOLE.len() - 2;
+const NUMBERS: usize = 9 + GAS_WHOLE.len() - 2;
 const ROTATION: usize = 8;
 
 impl<'a> Batch<'a> {
@@ -347,11 +344,20 @@ impl<'a> Batch<'a> {
             settle(&mut velocities[start..], &mut rotations[start..], kind);
             ends.push(velocities.len());
         }
+        let most = gas
+            .kinds
+            .iter()
+            .map(|kind| kind.body.reach)
+            .fold(0.0, f64::max);
+        let each_two = gas
+            .kinds
+            .iter()
+            .flat_map(|one| gas.kinds.iter().map(|two| one.body.reach + two.body.reach));
+        let sections = each_two
+            .map(|both| both * both / (4.0 * most * most))
+            .collect();
         let mut waiting = Vec::new();
-        waiting.resize_with(
-            gas.kinds.len() * gas.kinds.len(),
-            PendingEncounters::default,
-        );
+        waiting.resize_with(gas.kinds.len() * gas.kinds.len(), Waiting::default);
         Ok(Self {
             gas,
             number,
@@ -366,7 +372,7 @@ impl<'a> Batch<'a> {
             whole: Whole::default(),
             candidates: 0,
             ahead: Vec::new(),
-            drawn: 0,
+            sections,
             fastest: 0.0,
             until: 0.0,
             since: count,
@@ -399,7 +405,7 @@ impl<'a> Batch<'a> {
 
     /// The next candidate.
     #[inline(always)]
-    fn next(&mut self) -> Candidate {
+    fn next(&mut self) -> ([usize; 2], f64) {
         let place = (self.candidates % AHEAD) as usize;
         if place == 0 || self.ahead.is_empty() {
             let mut numbers = [(0.0, 0.0); AHEAD as usize];
@@ -415,11 +421,11 @@ impl<'a> Batch<'a> {
                 let i = if i * others > place { i - 1 } else { i };
                 let j = place - i * others;
                 let pair = [i, if j < i { j } else { j + 1 }];
-                self.ahead.push(Candidate { pair, chance });
+                self.ahead.push((pair, chance));
             }
             self.fetch();
         }
-        (self.candidates, self.drawn) = (self.candidates + 1, 0);
+        self.candidates += 1;
         self.ahead[place]
     }
 
@@ -428,7 +434,7 @@ impl<'a> Batch<'a> {
     fn fetch(&self) {
         let turns = self.gas.kinds.iter().any(|kind| kind.turned != [false; 3]);
         let mut sum = 0.0;
-        for &Candidate { pair, chance } in &self.ahead {
+        for &(pair, chance) in &self.ahead {
             if self.may_meet(pair, chance) {
                 for i in pair {
                     sum += self.velocities[i].x;
@@ -450,14 +456,7 @@ impl<'a> Batch<'a> {
     /// Finds the bound of a particle.
     #[inline(always)]
     fn bound(&mut self, i: usize) {
-        self.bounds[i] = (self.velocities[i].norm() / self.fastest) as f32 * ROUNDED;
-    }
-
-    /// Others, for its encounter and for noise.
-    #[inline(always)]
-    fn draw(&mut self) -> (f64, f64) {
-        self.drawn += 1;
-        of_candidate(self.gas.seed, self.number(self.candidates), self.drawn)
+        self.bounds[i] = bound(self.velocities[i].in_lane(), self.fastest)[0];
     }
 
     #[inline(always)]
@@ -492,7 +491,7 @@ impl<'a> Batch<'a> {
         let mut looks = self.rows.len() / gas.width();
         while looks <= gas.samples {
             if self.since == count || self.clock > self.until {
-                self.follow(&mut followers, law)?;
+                self.follow(&mut followers, law, level)?;
                 if monitor.is_cancelled() {
                     return Ok(());
                 }
@@ -511,39 +510,32 @@ impl<'a> Batch<'a> {
             }
             self.since += 1;
             self.clock += between / self.fastest;
-            let Candidate { pair, chance } = self.next();
+            let (pair, chance) = self.next();
             if !self.may_meet(pair, chance) {
                 continue;
             }
             let [i, j] = pair;
             if self.bounds[i] == f32::INFINITY || self.bounds[j] == f32::INFINITY {
-                self.follow(&mut followers, law)?;
+                self.follow(&mut followers, law, level)?;
             }
             if gas.heating > 0.0 {
-                self.heat(i);
-                self.heat(j);
+                self.heat(i, HEATED[0]);
+                self.heat(j, HEATED[1]);
             }
-            let speed = (self.velocities[i] - self.velocities[j]).norm();
-            let [one, two] = [self.order(i), self.order(j)];
-            let bodies = [gas.kinds[one].body, gas.kinds[two].body];
-            let both = bodies[0].reach + bodies[1].reach;
-            let share = speed / self.fastest * (both * both / (4.0 * reach * reach));
-            if share > 1.0 {
-                self.whole.beyond += 1.0;
-            }
-            if chance >= share {
-                continue;
-            }
-            let kinds = one * gas.kinds.len() + two;
-            if followers[kinds].smooth_balls() {
-                self.touch(pair, bodies, &followers[kinds]);
-            } else {
-                self.meet(pair, bodies, both, kinds)?;
-            }
+            let kinds = self.order(i) * gas.kinds.len() + self.order(j);
+            let candidate = Candidate {
+                pair,
+                chance,
+                number: self.number(self.candidates - 1),
+                time: self.clock,
+            };
+            self.waiting[kinds].candidates.push(candidate);
+            (self.bounds[i], self.bounds[j]) = (f32::INFINITY, f32::INFINITY);
+            self.waits += 1;
             // Not more than may be followed before the next look.
             let left = each * looks as f64 - self.whole.collisions;
             if self.waits == TOGETHER || self.waits as f64 >= left {
-                self.follow(&mut followers, law)?;
+                self.follow(&mut followers, law, level)?;
             }
             while looks <= gas.samples && self.whole.collisions >= each * looks as f64 {
                 self.look();
@@ -608,7 +600,6 @@ impl<'a> Batch<'a> {
             self.past,
             f64::from(self.exponent),
             self.candidates as f64,
-            f64::from(self.drawn),
             self.fastest,
             self.until,
             self.since as f64,
@@ -642,7 +633,6 @@ impl<'a> Batch<'a> {
             past,
             exponent,
             candidates,
-            drawn,
             fastest,
             until,
             since,
@@ -653,10 +643,10 @@ impl<'a> Batch<'a> {
             return;
         }
         (self.clock, self.past, self.exponent) = (clock, past, exponent as i32);
-        (self.candidates, self.drawn) = (candidates as u64, drawn as u32);
+        self.candidates = candidates as u64;
         (self.fastest, self.until, self.since) = (fastest, until, since as usize);
         self.slowest = slowest;
-        self.whole = Whole::of(&numbers[10..]);
+        self.whole = Whole::of(&numbers[9..]);
         let (rows, rest) = rest.split_at((self.gas.samples + 1) * self.gas.width());
         self.rows.extend(&rows[..looks as usize]);
         let (particles, heated) = rest.split_at(self.velocities.len() * (3 + ROTATION));
@@ -675,63 +665,19 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// The relative speed of two particles, and the direction from the second to the first where they come within reach, on a line that is drawn.
+    /// The states of two particles that meet, and how long each has turned freely.
     #[inline(always)]
-    fn line(&mut self, pair: [usize; 2]) -> (f64, Vector) {
-        let u = self.velocities[pair[0]] - self.velocities[pair[1]];
-        let speed = u.norm();
-        let direction = u / speed;
-        let (square, around) = self.draw();
-        let around = sincos(TAU * around);
-        let apart = approach(direction, direction.across(), square.sqrt(), around);
-        (speed, apart)
-    }
-
-    /// Lets two smooth balls touch, which they do where they come within reach of each other.
-    #[inline(always)]
-    fn touch(&mut self, pair: [usize; 2], bodies: [&Partner; 2], follower: &Follower<'_, '_>) {
-        let (_, normal) = self.line(pair);
-        let before = [self.velocities[pair[0]], self.velocities[pair[1]]];
-        let number = self.number(self.candidates - 1);
-        let after = follower.touch(before, normal, (self.gas.seed, number));
-        self.whole.attempts += 1.0;
-        self.whole.steps += 2.0; // as those that are followed: where they touch, and where they part
-        self.whole.contacts += 1.0;
-        let (mut had, mut have) = (0.0, 0.0);
-        for k in 0..2 {
-            had += bodies[k].translational_energy(before[k]);
-            have += bodies[k].translational_energy(after[k]);
-            self.velocities[pair[k]] = after[k];
-            self.bound(pair[k]);
-        }
-        self.count(had, have);
-    }
-
-    /// Counts a collision, an encounter with contact, and the energy that it creates.
-    #[inline(always)]
-    fn count(&mut self, before: f64, after: f64) {
-        self.whole.collisions += 1.0;
-        if after > before * (1.0 + CREATED) {
-            self.whole.creating += 1.0;
-            self.whole.created += (after - before) * 2f64.powi(-2 * self.exponent);
-        }
-    }
-
-    /// Lets two particles, whose kinds together have this number, meet at the next [`Self::follow`].
-    #[inline(always)]
-    fn meet(
-        &mut self,
-        pair: [usize; 2],
-        bodies: [&Partner; 2],
-        reach: f64,
-        kinds: usize,
-    ) -> Result<(), Error> {
-        let (speed, apart) = self.line(pair);
+    fn approach(&self, meeting: &Meeting) -> Result<Approach, Error> {
+        let Candidate {
+            pair, number, time, ..
+        } = meeting.candidate;
+        let bodies = pair.map(|i| self.kind(i).body);
+        let reach = bodies[0].reach + bodies[1].reach;
         let mut states = [
-            self.free(pair[0], apart * reach),
+            self.free(pair[0], meeting.apart * reach),
             self.free(pair[1], Vector::default()),
         ];
-        let (mut spins, mut passed): (f64, _) = (0.0, [0.0; 2]);
+        let (mut spins, mut passed, mut draw): (f64, _, _) = (0.0, [0.0; 2], LINE);
         for (i, particle) in pair.into_iter().enumerate() {
             if self.kind(particle).turned == [false; 3] {
                 states[i].spin = Vector::default(); // that of a smooth ball, which nothing depends on
@@ -741,50 +687,78 @@ impl<'a> Batch<'a> {
             spins = spins.max(spin * reach);
             passed[i] = match self.gas.phase {
                 _ if spin == 0.0 => 0.0,
-                Phase::Time => within(self.clock - self.rotations[particle].time, spin),
-                Phase::Uniform => self.draw().0 * TURNS * TAU / spin,
+                Phase::Time => within(time - self.rotations[particle].time, spin),
+                Phase::Uniform => {
+                    draw += 1;
+                    of_candidate(self.gas.seed, number + 1, draw).0 * TURNS * TAU / spin
+                }
             };
         }
         let balls = bodies[0].is_ball() && bodies[1].is_ball();
-        if spins > if balls { LOST_SPIN } else { FASTEST_SPIN } * speed {
+        if spins > if balls { LOST_SPIN } else { FASTEST_SPIN } * meeting.speed {
             return Err(self.too_hot());
         }
-        let waiting = &mut self.waiting[kinds];
-        waiting.pairs.push((pair, self.candidates - 1, self.clock));
-        waiting.approaches.push(Approach { states, passed });
-        for i in pair {
-            self.bounds[i] = f32::INFINITY;
-        }
-        self.waits += 1;
-        Ok(())
+        Ok(Approach { states, passed })
     }
 
-    /// Follows the encounters that wait.
+    /// Decides the candidates that wait, and follows the encounters of those that meet.
     #[inline(always)]
-    fn follow(&mut self, followers: &mut [Follower<'_, '_>], law: &Law<'_>) -> Result<(), Error> {
+    fn follow(
+        &mut self,
+        followers: &mut [Follower<'_, '_>],
+        law: &Law<'_>,
+        level: Level,
+    ) -> Result<(), Error> {
         if self.waits == 0 {
             return Ok(());
         }
+        let seed = self.gas.seed;
         for (i, follower) in followers.iter_mut().enumerate() {
             let mut waiting = std::mem::take(&mut self.waiting[i]);
-            let PendingEncounters { pairs, approaches } = &mut waiting;
-            let (seed, batch) = (self.gas.seed, self.number(0));
-            let chance = |k: usize, contact| of_impact(seed, batch | pairs[k].1, contact);
+            let Waiting {
+                candidates,
+                meetings,
+                approaches,
+            } = &mut waiting;
+            let decided = level.run(Candidates {
+                candidates,
+                velocities: &mut self.velocities,
+                bounds: &mut self.bounds,
+                fastest: self.fastest,
+                section: self.sections[i],
+                seed,
+                draw: LINE,
+                follower,
+                meetings,
+            });
+            self.whole.beyond += decided.beyond as f64;
+            // Smooth balls never create energy, and are looked at where they touch, and where they part.
+            let touched = decided.touched as f64;
+            self.whole.attempts += touched;
+            self.whole.contacts += touched;
+            self.whole.collisions += touched;
+            self.whole.steps += 2.0 * touched;
+            for meeting in meetings.iter() {
+                approaches.push(self.approach(meeting)?);
+            }
+            let chance = |k: usize, contact| of_impact(seed, meetings[k].candidate.number, contact);
             let ends = follower.follow(approaches, &chance, None);
-            for ((&(pair, candidate, time), approach), end) in
-                pairs.iter().zip(&*approaches).zip(ends)
-            {
+            for ((meeting, approach), end) in meetings.iter().zip(&*approaches).zip(ends) {
+                let candidate = &meeting.candidate;
                 match end {
-                    Ok(outcome) => self.met(pair, approach, outcome, time),
+                    Ok(outcome) => self.met(candidate, approach, outcome),
                     Err(trouble) => {
-                        return Err(self.lost(trouble.clone(), approach, law, batch | candidate));
+                        return Err(self.lost(trouble.clone(), approach, law, candidate.number));
                     }
                 }
-                for i in pair {
+            }
+            if !follower.smooth_balls() {
+                for i in candidates.iter().flat_map(|candidate| candidate.pair) {
                     self.bound(i);
                 }
             }
-            pairs.clear();
+            candidates.clear();
+            meetings.clear();
             approaches.clear();
             self.waiting[i] = waiting;
         }
@@ -794,13 +768,8 @@ impl<'a> Batch<'a> {
 
     /// What an encounter at a time does to two particles.
     #[inline(always)]
-    fn met(
-        &mut self,
-        pair: [usize; 2],
-        approach: &Approach,
-        outcome: &Outcome<FreeBody>,
-        time: f64,
-    ) {
+    fn met(&mut self, candidate: &Candidate, approach: &Approach, outcome: &Outcome<FreeBody>) {
+        let Candidate { pair, time, .. } = *candidate;
         self.whole.attempts += 1.0;
         self.whole.steps += outcome.steps as f64;
         if outcome.contacts == 0 {
@@ -815,7 +784,12 @@ impl<'a> Batch<'a> {
             let [one, two] = states;
             one.energy(bodies[0]) + two.energy(bodies[1])
         };
-        self.count(energy(&approach.states), energy(&outcome.states));
+        self.whole.collisions += 1.0;
+        let (before, after) = (energy(&approach.states), energy(&outcome.states));
+        if after > before * (1.0 + CREATED) {
+            self.whole.creating += 1.0;
+            self.whole.created += (after - before) * 2f64.powi(-2 * self.exponent);
+        }
         for (i, (state, before)) in pair
             .into_iter()
             .zip(outcome.states.iter().zip(&approach.states))
@@ -868,13 +842,12 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Adds what the noise has given to the velocity of a particle since it was last asked for.
+    /// Adds what the noise has given to the velocity of a particle since it was last asked for, with two draws from this one on.
     #[inline(always)]
-    fn heat(&mut self, particle: usize) {
-        if self.gas.heating == 0.0 {
-            return;
-        }
-        let [x, y, z] = normals([self.draw(), self.draw()]);
+    fn heat(&mut self, particle: usize, draw: u32) {
+        let number = self.number(self.candidates);
+        let drawn = [draw, draw + 1].map(|draw| of_candidate(self.gas.seed, number, draw));
+        let [x, y, z] = normals(drawn);
         let noise = self.gas.noise(self.kind(particle).body.inverse_mass);
         let (v, heated) = (&mut self.velocities[particle], &mut self.heated[particle]);
         let deviation = (noise * (self.clock - *heated)).sqrt();
@@ -887,7 +860,7 @@ impl<'a> Batch<'a> {
     fn heat_all(&mut self) {
         if self.gas.heating > 0.0 {
             for i in 0..self.velocities.len() {
-                self.heat(i);
+                self.heat(i, ALL_HEATED + 2 * i as u32);
             }
             self.rest();
         }

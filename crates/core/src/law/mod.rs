@@ -29,7 +29,6 @@ pub use custom::{CustomLaw, ImpulseFunction};
 pub use frictionless::Frictionless;
 pub use kind::{Creation, LawKind, Slip};
 pub(crate) use kind::{MOST_CONTACTS, Respond};
-pub(crate) use normal::scattered;
 pub use normal::*;
 pub use rule::Law;
 pub use tangential::TangentialRestitution;

@@ -155,7 +155,7 @@ impl<'a> Law<'a> {
             velocity: Components::in_lane(velocity),
             compliance: *compliance,
         };
-        let normal = self.coefficient(velocity.z.abs(), chance);
+        let normal = self.coefficient(one(velocity.z.abs()), chance.map(one));
         let response = self.rule.respond::<_, true>(&contact, normal);
         Ok(Answer {
             impulse: response.impulse.in_axes(),
@@ -163,12 +163,16 @@ impl<'a> Law<'a> {
         })
     }
 
-    /// ε_n at a speed, where it scatters with a uniform number in (0, 1).
+    /// ε_n at a speed, where it scatters with uniform numbers in (0, 1).
     #[inline(always)]
-    pub(crate) fn coefficient(&self, speed: f64, chance: Option<f64>) -> Pack<Scalar, 1> {
-        let normal = one(self.normal.at(speed));
-        match chance {
-            Some(chance) => scattered(normal, self.deviation, one(chance)),
+    pub(crate) fn coefficient<S: Simd>(
+        &self,
+        speed: Pack<S, 1>,
+        chances: Option<Pack<S, 1>>,
+    ) -> Pack<S, 1> {
+        let normal = self.normal.in_lanes(speed);
+        match chances {
+            Some(chances) => scattered(normal, self.deviation, chances),
             None => normal,
         }
     }
@@ -237,10 +241,8 @@ impl<S: Simd, const SPACE: bool> WithSimd for Choice<'_, '_, S, SPACE> {
         let simd = contacts[0].velocity.normal.simd();
         let mut normal = [Pack::splat(simd, 0.0); MOST_CONTACTS];
         for (i, contact) in contacts.iter().enumerate() {
-            normal[i] = law.normal.in_lanes(contact.approach_speed());
-            if law.scatters() {
-                normal[i] = scattered(normal[i], law.deviation, chances[i]);
-            }
+            let chances = law.scatters().then(|| chances[i]);
+            normal[i] = law.coefficient(contact.approach_speed(), chances);
         }
         law.rule
             .respond_all::<S, SPACE>(contacts, &normal, responses);

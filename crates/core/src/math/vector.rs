@@ -4,7 +4,7 @@
 //! exactly 0, as in a motion in the x–z plane, remain exactly 0.
 
 use crate::simd::{Mask, Operand, Pack};
-use pulp::Simd;
+use pulp::{Scalar, Simd};
 use std::ops::{Add, Div, Mul, Sub};
 
 /// A vector (x, y, z); z is along the plane normal.
@@ -56,13 +56,13 @@ impl Vector {
     /// A unit vector across this one, whose own length is 1.
     #[inline(always)]
     pub fn across(self) -> Self {
-        let aside = if self.x.abs() < 0.6 {
-            Self::new(1.0, 0.0, 0.0)
-        } else {
-            Self::new(0.0, 1.0, 0.0)
-        };
-        let across = self.cross(aside);
-        across / across.norm()
+        self.in_lane().across().lane(0)
+    }
+
+    /// The only lane of a vector in each.
+    #[inline(always)]
+    pub(crate) fn in_lane(self) -> Vectors<Scalar, 1> {
+        Vectors::splat(Scalar::new(), self)
     }
 
     /// Length of the component along the plane.
@@ -148,6 +148,25 @@ impl<S: Simd, const K: usize> Vectors<S, K> {
         }
     }
 
+    /// Length.
+    #[inline(always)]
+    pub fn norm(self) -> Pack<S, K> {
+        self.dot(self).sqrt()
+    }
+
+    /// A unit vector across this one, whose own length is 1.
+    #[inline(always)]
+    pub fn across(self) -> Self {
+        let simd = self.x.simd();
+        let first = self.x.abs().lt(0.6);
+        let across = self.cross(Self {
+            x: first.select(Pack::splat(simd, 1.0), 0.0),
+            y: first.select(Pack::splat(simd, 0.0), 1.0),
+            z: Pack::splat(simd, 0.0),
+        });
+        across.over(across.norm())
+    }
+
     /// `self * factor + addend`, each component rounded once.
     #[inline(always)]
     pub fn mul_add(self, factor: impl Operand<S, K>, addend: Self) -> Self {
@@ -167,6 +186,26 @@ impl<S: Simd, const K: usize> Vectors<S, K> {
             x: self.x * factor,
             y: self.y * factor,
             z: self.z * factor,
+        }
+    }
+
+    /// `self / divisor`.
+    #[inline(always)]
+    pub fn over(self, divisor: Pack<S, K>) -> Self {
+        Self {
+            x: self.x / divisor,
+            y: self.y / divisor,
+            z: self.z / divisor,
+        }
+    }
+
+    /// `self + b`.
+    #[inline(always)]
+    pub fn plus(self, b: Self) -> Self {
+        Self {
+            x: self.x + b.x,
+            y: self.y + b.y,
+            z: self.z + b.z,
         }
     }
 

@@ -8,7 +8,7 @@
 use super::encounter::{Chance, End, Ending, Hit, OnHit, Outcome, UNRESOLVED};
 use super::partner::{Approach, FreeBody, Partner};
 use crate::contact::{BallGaps, INVISIBLE, RoundPart, RoundParts, TurningAxis};
-use crate::law::{Frictionless, Law, Rule, scattered};
+use crate::law::{Frictionless, Law, Rule};
 use crate::math::quaternion::{product, rotated, square};
 use crate::math::{Quaternion, UNITS, Vector, Vectors};
 use crate::shape::{Piece, PieceKind};
@@ -581,16 +581,16 @@ impl AxialEncounters<'_, '_, '_> {
             .mul_add(inverse[1], arms[0].dot(arms[0]).mul_add(inverse[0], free));
         let turning = one.precession.dot(arms[0]) - two.precession.dot(arms[1]);
         let speed = (-(normal.dot(all.velocity) + turning)).max(0.0);
-        let mut coefficient = pair.law.normal.in_lanes(speed);
+        let mut chances = None;
         if pair.law.deviation > 0.0 {
-            let mut chances = Pack::splat(zero.simd(), 0.5);
+            let chances = chances.insert(zero + 0.5);
             let mut lanes = bits(touched);
             while let Some(lane) = take(&mut lanes) {
                 let contact = all.contacts.as_slice()[lane] as u64;
                 chances.as_mut_slice()[lane] = (self.chance)(jobs[lane], contact);
             }
-            coefficient = scattered(coefficient, pair.law.deviation, chances);
         }
+        let coefficient = pair.law.coefficient(speed, chances);
         let size = Frictionless::impulse(coefficient, speed, compliance);
         let size = touched.select(size, 0.0);
         let apart = coefficient * speed;

@@ -5,9 +5,10 @@ use super::encounter::{Chance, End, Following, OnHit};
 use super::partner::{Approach, Partner};
 use crate::contact::Between;
 use crate::law::{Frictionless, Law};
-use crate::math::Vector;
+use crate::math::Vectors;
 use crate::random::of_impact;
-use crate::simd::{Level, one as pack};
+use crate::simd::{Level, Pack};
+use pulp::Simd;
 use std::iter::Flatten;
 use std::slice::Iter;
 
@@ -39,20 +40,26 @@ impl<'a, 'b> Follower<'a, 'b> {
         self.axial.as_ref().is_some_and(AxialPair::is_of_spheres)
     }
 
-    /// The velocities of smooth balls after a contact with this normal; the number, with a seed, is that of the encounter, where ε_n scatters.
+    /// The velocities of smooth balls after a contact with this normal; the numbers, with a seed, are those of the encounters, where ε_n scatters.
     #[inline(always)]
-    pub fn touch(
+    pub fn touch<S: Simd>(
         &self,
-        [one, two]: [Vector; 2],
-        normal: Vector,
-        (seed, number): (u64, u64),
-    ) -> [Vector; 2] {
+        [one, two]: [Vectors<S, 1>; 2],
+        normal: Vectors<S, 1>,
+        (seed, numbers): (u64, &[u64]),
+    ) -> [Vectors<S, 1>; 2] {
         let (first, second) = (self.bodies[0].inverse_mass, self.bodies[1].inverse_mass);
-        let speed = normal.dot(two - one).max(0.0);
-        let chance = (self.law.deviation > 0.0).then(|| of_impact(seed, number, 0));
-        let coefficient = self.law.coefficient(speed, chance);
-        let size = Frictionless::impulse(coefficient, pack(speed), pack(first + second));
-        let impulse = normal * size.as_slice()[0];
+        let speed = normal.dot(two.minus(one)).max(0.0);
+        let mut chances = None;
+        if self.law.deviation > 0.0 {
+            let chances = chances.insert(0.0 * speed + 0.5);
+            for (chance, &number) in chances.as_mut_slice().iter_mut().zip(numbers) {
+                *chance = of_impact(seed, number, 0);
+            }
+        }
+        let coefficient = self.law.coefficient(speed, chances);
+        let compliance = Pack::splat(speed.simd(), first + second);
+        let impulse = normal.times(Frictionless::impulse(coefficient, speed, compliance));
         [impulse.mul_add(first, one), impulse.mul_add(-second, two)]
     }
 
@@ -107,7 +114,7 @@ impl<'a, 'b> Follower<'a, 'b> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Quaternion;
+    use crate::math::{Quaternion, Vector};
     use crate::pair::{PairState, encounter};
     use crate::random::of_candidate;
     use crate::{AnyBody, Dumbbell, Material, Scattered};
@@ -149,11 +156,12 @@ mod tests {
                 let states = [state(0), state(1)];
                 let end = encounter(bodies, &law, states, chance, |_| ()).unwrap();
                 assert_eq!(end.contacts, 1);
-                let after = follower.touch(velocities, normal, (7, number));
+                let before = velocities.map(Vector::in_lane);
+                let after = follower.touch(before, normal.in_lane(), (7, &[number]));
                 // Rounding moves the place where balls that graze touch.
                 let grazing = u.norm() / normal.dot(u).abs();
                 for (state, velocity) in end.states.iter().zip(after) {
-                    assert!((state.velocity - velocity).norm() < 1e-14 * grazing);
+                    assert!((state.velocity - velocity.lane(0)).norm() < 1e-14 * grazing);
                 }
             }
         }

@@ -6,9 +6,11 @@
 
 use super::partner::{PairState, Partner};
 use crate::Error;
-use crate::math::{Quaternion, Vector};
+use crate::math::{Quaternion, Vector, Vectors};
 use crate::random::{NumberForm, formed, normal_pair, of_encounters};
 use crate::simd::elementary::ln;
+use crate::simd::{Pack, one as pack};
+use pulp::Simd;
 use std::f64::consts::{PI, TAU};
 
 /// Three normal numbers from uniform ones in [0, 1).
@@ -156,7 +158,9 @@ impl Encounters<'_> {
             Some(b) => b / reach,
             None => square.sqrt(),
         };
-        let apart = approach(u, Vector::new(-sine, cosine, 0.0), b, around) * reach;
+        let across = Vector::new(-sine, cosine, 0.0);
+        let around = (pack(around.0), pack(around.1));
+        let apart = approach(u.in_lane(), across.in_lane(), pack(b), around).lane(0) * reach;
         let (speed, drift) = match self.meeting {
             Meeting::Speed(speed) => (speed, Vector::default()),
             Meeting::Temperatures(temperatures) => {
@@ -204,10 +208,16 @@ impl Encounters<'_> {
 /// The place on the unit sphere at which a body comes in along **u**, at the distance b from the parallel through the centre; `across` is a unit vector
 /// normal to **u**, from which the azimuth counts, of which sine and cosine are given.
 #[inline(always)]
-pub(crate) fn approach(u: Vector, across: Vector, b: f64, (s, c): (f64, f64)) -> Vector {
+pub(crate) fn approach<S: Simd>(
+    u: Vectors<S, 1>,
+    across: Vectors<S, 1>,
+    b: Pack<S, 1>,
+    (s, c): (Pack<S, 1>, Pack<S, 1>),
+) -> Vectors<S, 1> {
     let second = u.cross(across);
     let back = (1.0 - b * b).max(0.0).sqrt();
-    across * (b * c) + second * (b * s) - u * back
+    let aside = across.times(b * c).plus(second.times(b * s));
+    aside.minus(u.times(back))
 }
 
 /// The random numbers of successive encounters, or particles of a gas: those of a draw are computed for all of them, when the first asks for it.

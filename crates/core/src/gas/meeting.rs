@@ -1,0 +1,133 @@
+//! Which candidates of a gas come within reach of each other, and on which lines: many at once, one in each lane.
+
+use super::TOGETHER;
+use crate::math::{Vector, Vectors};
+use crate::pair::{Follower, approach};
+use crate::random::of_some_candidates;
+use crate::simd::elementary::sincos_in_lanes;
+use crate::simd::{LANES, Pack};
+use pulp::{Simd, WithSimd};
+use std::f64::consts::TAU;
+
+/// What is more than the rounding of a bound and of the sum of two.
+const ROUNDED: f32 = 1.0 + 8.0 * f32::EPSILON;
+
+/// Two particles that may meet.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Candidate {
+    pub pair: [usize; 2],
+    /// What decides whether they do.
+    pub chance: f64,
+    /// Its number among the candidates of all batches.
+    pub number: u64,
+    pub time: f64,
+}
+
+/// Two particles that come within reach of each other.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Meeting {
+    pub candidate: Candidate,
+    /// Their relative speed.
+    pub speed: f64,
+    /// The direction from the second to the first.
+    pub apart: Vector,
+}
+
+/// Candidates of the same two kinds, no two of which share a particle.
+pub(super) struct Candidates<'a, 'b, 'c> {
+    pub candidates: &'a [Candidate],
+    pub velocities: &'a mut [Vector],
+    pub bounds: &'a mut [f32],
+    /// The majorant of u, and the cross-section of these two kinds over the largest.
+    pub fastest: f64,
+    pub section: f64,
+    pub seed: u64,
+    /// The draw that the lines are found with.
+    pub draw: u32,
+    pub follower: &'a Follower<'b, 'c>,
+    /// Receives those that meet; smooth balls touch at once instead.
+    pub meetings: &'a mut Vec<Meeting>,
+}
+
+/// How many have touched, and how many were faster than the majorant.
+#[derive(Debug, Default)]
+pub(super) struct Decided {
+    pub touched: usize,
+    pub beyond: usize,
+}
+
+/// No less than the speeds of particles over the majorant of u.
+#[inline(always)]
+pub(super) fn bound<S: Simd>(velocity: Vectors<S, 1>, fastest: f64) -> [f32; LANES] {
+    let part = velocity.norm() / Pack::splat(velocity.x.simd(), fastest);
+    let mut bounds = [0.0; LANES];
+    for (bound, &part) in bounds.iter_mut().zip(part.as_slice()) {
+        *bound = part as f32 * ROUNDED;
+    }
+    bounds
+}
+
+impl WithSimd for Candidates<'_, '_, '_> {
+    type Output = Decided;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Decided {
+        let zero = Pack::splat(simd, 0.0);
+        let mut both = [Vectors::splat(simd, Vector::default()); 2];
+        let (mut chances, mut squares, mut turns) = (zero, zero, zero);
+        let (mut numbers, mut draws) = ([0; LANES], [(0.0, 0.0); TOGETHER]);
+        let mut counters = [0; TOGETHER];
+        for (counter, candidate) in counters.iter_mut().zip(self.candidates) {
+            *counter = candidate.number + 1;
+        }
+        let draws = &mut draws[..self.candidates.len()];
+        of_some_candidates(self.seed, &counters, self.draw, draws);
+        let smooth = self.follower.smooth_balls();
+        let mut decided = Decided::default();
+        let width = Pack::<S, 1>::WIDTH;
+        for (some, draws) in self.candidates.chunks(width).zip(draws.chunks(width)) {
+            for (lane, (candidate, &(square, turn))) in some.iter().zip(draws).enumerate() {
+                let [i, j] = candidate.pair;
+                both[0].put(lane, self.velocities[i]);
+                both[1].put(lane, self.velocities[j]);
+                chances.as_mut_slice()[lane] = candidate.chance;
+                squares.as_mut_slice()[lane] = square;
+                turns.as_mut_slice()[lane] = turn;
+                numbers[lane] = candidate.number;
+            }
+            let u = both[0].minus(both[1]);
+            let speed = u.norm();
+            let share = speed / Pack::splat(simd, self.fastest) * self.section;
+            let meet = chances.lt(share);
+            let beyond = Pack::splat(simd, 1.0).lt(share);
+            let direction = u.over(speed);
+            let around = sincos_in_lanes(TAU * turns);
+            let apart = approach(direction, direction.across(), squares.sqrt(), around);
+            if smooth {
+                let after = self.follower.touch(both, apart, (self.seed, &numbers));
+                for i in 0..2 {
+                    both[i] = both[i].or(meet, after[i]);
+                    let bounds = bound(both[i], self.fastest);
+                    for (lane, candidate) in some.iter().enumerate() {
+                        self.velocities[candidate.pair[i]] = both[i].lane(lane);
+                        self.bounds[candidate.pair[i]] = bounds[lane];
+                    }
+                }
+            }
+            for (lane, &candidate) in some.iter().enumerate() {
+                decided.beyond += usize::from(beyond.get(lane));
+                if smooth {
+                    decided.touched += usize::from(meet.get(lane));
+                } else if meet.get(lane) {
+                    let (speed, apart) = (speed.as_slice()[lane], apart.lane(lane));
+                    self.meetings.push(Meeting {
+                        candidate,
+                        speed,
+                        apart,
+                    });
+                }
+            }
+        }
+        decided
+    }
+}
