@@ -56,15 +56,10 @@ pub(super) struct Decided {
     pub beyond: usize,
 }
 
-/// No less than the speeds of particles over the majorant of u.
+/// No less than the speed of a particle over the majorant of u, from the square of that.
 #[inline(always)]
-pub(super) fn bound<S: Simd>(velocity: Vectors<S, 1>, fastest: f64) -> [f32; LANES] {
-    let part = velocity.norm() / Pack::splat(velocity.x.simd(), fastest);
-    let mut bounds = [0.0; LANES];
-    for (bound, &part) in bounds.iter_mut().zip(part.as_slice()) {
-        *bound = part as f32 * ROUNDED;
-    }
-    bounds
+pub(super) fn bound(square: f64) -> f32 {
+    (square as f32).sqrt() * ROUNDED + f32::MIN_POSITIVE.sqrt()
 }
 
 impl WithSimd for Candidates<'_, '_, '_> {
@@ -82,6 +77,7 @@ impl WithSimd for Candidates<'_, '_, '_> {
         }
         let draws = &mut draws[..self.candidates.len()];
         of_some_candidates(self.seed, &counters, self.draw, draws);
+        let scale = 1.0 / (self.fastest * self.fastest);
         let smooth = self.follower.smooth_balls();
         let mut decided = Decided::default();
         let width = Pack::<S, 1>::WIDTH;
@@ -107,10 +103,10 @@ impl WithSimd for Candidates<'_, '_, '_> {
                 let after = self.follower.touch(both, apart, (self.seed, &numbers));
                 for i in 0..2 {
                     both[i] = both[i].or(meet, after[i]);
-                    let bounds = bound(both[i], self.fastest);
+                    let squares = both[i].dot(both[i]) * scale;
                     for (lane, candidate) in some.iter().enumerate() {
                         self.velocities[candidate.pair[i]] = both[i].lane(lane);
-                        self.bounds[candidate.pair[i]] = bounds[lane];
+                        self.bounds[candidate.pair[i]] = bound(squares.as_slice()[lane]);
                     }
                 }
             }

@@ -22,7 +22,7 @@ use crate::pair::{
     normals,
 };
 use crate::random::{of_candidate, of_candidates, of_impact};
-use crate::simd::Level;
+use crate::simd::{LANES, Level};
 use crate::threads::{Monitor, Resources};
 use crate::{Error, memory};
 use meeting::{Candidate, Candidates, Meeting, bound};
@@ -209,6 +209,14 @@ impl Gas<'_> {
     fn check(&self) -> Result<(), Error> {
         let holds = self.collisions.is_finite() && self.collisions > 0.0;
         Error::unless(holds, "collisions", self.collisions, "finite and > 0")?;
+        let each = self.each() as f64;
+        let holds = each <= f64::from(i32::MAX);
+        Error::unless(
+            holds,
+            "particles",
+            each,
+            "at most 2³¹ − 1 in each of the batches",
+        )?;
         for kind in &self.kinds {
             let power = self.heating * kind.body.inverse_mass;
             let some = "0, or such that velocities neither overflow nor underflow (W)";
@@ -262,13 +270,15 @@ struct Batch<'a> {
     whole: Whole,
     /// Candidates so far, and a row of [`AHEAD`] of which the next is one.
     candidates: u64,
-    ahead: Vec<([usize; 2], f64)>,
+    ahead: Row,
+    /// The places in it of those that may meet, and the time at each.
+    sieved: Vec<(usize, f64)>,
     /// The cross-section of each two kinds over the largest.
     sections: Vec<f64>,
-    /// The majorant of u, the time until which it holds, and candidates since it was found.
+    /// The majorant of u, and the time and the candidate until which it holds.
     fastest: f64,
     until: f64,
-    since: usize,
+    upto: u64,
     /// The largest speed at which the velocity of the centre of mass is taken off again.
     slowest: f64,
     /// Looks so far.
@@ -276,6 +286,30 @@ struct Batch<'a> {
     /// Candidates that are not decided yet, for each two kinds, and their number.
     waiting: Vec<Waiting>,
     waits: usize,
+}
+
+/// Successive candidates: of each the two particles, and what decides whether they meet.
+struct Row {
+    /// The number of the first.
+    number: u64,
+    first: [i32; AHEAD],
+    second: [i32; AHEAD],
+    chance: [f64; AHEAD],
+}
+
+impl Row {
+    const NONE: Self = Self {
+        number: u64::MAX,
+        first: [0; AHEAD],
+        second: [0; AHEAD],
+        chance: [0.0; AHEAD],
+    };
+
+    #[inline(always)]
+    fn get(&self, place: usize) -> ([usize; 2], f64) {
+        let pair = [self.first[place] as usize, self.second[place] as usize];
+        (pair, self.chance[place])
+    }
 }
 
 /// Candidates of two kinds that are decided and followed together, those of them that meet, and from where.
@@ -287,7 +321,7 @@ struct Waiting {
 }
 
 /// Candidates that are drawn at once: what they need of memory is fetched at once, too.
-const AHEAD: u64 = 64;
+const AHEAD: usize = 64;
 /// Most candidates that wait.
 const TOGETHER: usize = 128;
 /// The first draws for the line of an encounter, and then for phases; for the noise on each of its bodies; and on all particles after it.
@@ -371,11 +405,12 @@ impl<'a> Batch<'a> {
             exponent: 0,
             whole: Whole::default(),
             candidates: 0,
-            ahead: Vec::new(),
+            ahead: Row::NONE,
+            sieved: Vec::new(),
             sections,
             fastest: 0.0,
             until: 0.0,
-            since: count,
+            upto: 0,
             slowest: 0.0,
             rows: memory::empty("looks at a gas", (gas.samples + 1) * gas.width())?,
             waiting,
@@ -403,60 +438,61 @@ impl<'a> Batch<'a> {
         (self.number as u64) << 48 | candidate
     }
 
-    /// The next candidate.
+    /// Finds those that may meet of the next candidates: up to the end of a row or of the majorant of u, until there are so many, or until a particle has
+    /// met another one before. Returns the place in the row behind the last one and the time then.
     #[inline(always)]
-    fn next(&mut self) -> ([usize; 2], f64) {
-        let place = (self.candidates % AHEAD) as usize;
-        if place == 0 || self.ahead.is_empty() {
-            let mut numbers = [(0.0, 0.0); AHEAD as usize];
-            let first = self.number(self.candidates - place as u64);
-            of_candidates(self.gas.seed, first, &mut numbers);
-            let others = self.velocities.len() - 1;
-            let pairs = self.velocities.len() as f64 * others as f64;
-            self.ahead.clear();
-            for (which, chance) in numbers {
-                let place = (which * pairs) as usize;
-                // Sooner divided than a whole number, and exact below 2⁵³.
-                let i = (place as f64 / others as f64) as usize;
-                let i = if i * others > place { i - 1 } else { i };
-                let j = place - i * others;
-                let pair = [i, if j < i { j } else { j + 1 }];
-                self.ahead.push((pair, chance));
-            }
-            self.fetch();
+    fn sieve(&mut self, between: f64, most: usize) -> (usize, f64) {
+        let start = self.candidates as usize % AHEAD;
+        let row = self.candidates - start as u64;
+        if self.ahead.number != row {
+            self.draw(row);
         }
-        self.candidates += 1;
-        self.ahead[place]
-    }
-
-    /// Asks for all that a row may need of memory at once.
-    #[inline(always)]
-    fn fetch(&self) {
-        let turns = self.gas.kinds.iter().any(|kind| kind.turned != [false; 3]);
-        let mut sum = 0.0;
-        for &(pair, chance) in &self.ahead {
-            if self.may_meet(pair, chance) {
-                for i in pair {
-                    sum += self.velocities[i].x;
-                    if turns {
-                        sum += self.rotations[i].time;
-                    }
-                }
+        let end = (start as u64 + self.upto - self.candidates).min(AHEAD as u64) as usize;
+        let always = self.gas.heating > 0.0;
+        let mut clock = self.clock;
+        self.sieved.clear();
+        for place in start..end {
+            let ([i, j], part) = self.ahead.get(place);
+            let sum = self.bounds[i] + self.bounds[j];
+            if sum == f32::INFINITY || self.sieved.len() == most || clock > self.until {
+                return (place, clock);
+            }
+            clock += between;
+            // If not, u is certainly less than this part of its majorant.
+            if f64::from(sum) > part || always {
+                (self.bounds[i], self.bounds[j]) = (f32::INFINITY, f32::INFINITY);
+                self.sieved.push((place, clock));
             }
         }
-        std::hint::black_box(sum);
+        (end, clock)
     }
 
-    /// False if the relative speed of two particles is certainly less than this part of its majorant.
+    /// Draws a row of candidates.
     #[inline(always)]
-    fn may_meet(&self, [i, j]: [usize; 2], part: f64) -> bool {
-        f64::from(self.bounds[i] + self.bounds[j]) > part || self.gas.heating > 0.0
+    fn draw(&mut self, first: u64) {
+        self.ahead.number = first;
+        let mut numbers = [(0.0, 0.0); AHEAD];
+        of_candidates(self.gas.seed, self.number(first), &mut numbers);
+        let others = (self.velocities.len() - 1) as f64;
+        let pairs = (others + 1.0) * others;
+        // By itself, this loop is compiled for vectors: all are whole numbers, exact below 2⁵³.
+        for (k, (which, chance)) in numbers.into_iter().enumerate() {
+            let place = (which * pairs).floor();
+            let i = (place / others).floor();
+            let i = if i * others > place { i - 1.0 } else { i };
+            let j = place - i * others;
+            let j = if j < i { j } else { j + 1.0 };
+            self.ahead.first[k] = i as i32;
+            self.ahead.second[k] = j as i32;
+            self.ahead.chance[k] = chance;
+        }
     }
 
     /// Finds the bound of a particle.
     #[inline(always)]
     fn bound(&mut self, i: usize) {
-        self.bounds[i] = bound(self.velocities[i].in_lane(), self.fastest)[0];
+        let (v, scale) = (self.velocities[i], 1.0 / (self.fastest * self.fastest));
+        self.bounds[i] = bound(v.dot(v) * scale);
     }
 
     #[inline(always)]
@@ -481,6 +517,7 @@ impl<'a> Batch<'a> {
         let pairs = count as f64 * (count - 1) as f64;
         // n/N is 1/V, and half of the ordered pairs are the pairs.
         let between = 2.0 / (gas.density / count as f64 * pairs * area);
+        let turns = gas.kinds.iter().any(|kind| kind.turned != [false; 3]);
         let lightest = gas.kinds.iter().map(|kind| kind.body.inverse_mass);
         let noise = gas.noise(lightest.fold(0.0, f64::max));
         if self.rows.is_empty() {
@@ -490,7 +527,7 @@ impl<'a> Batch<'a> {
         monitor.add_finished(finished);
         let mut looks = self.rows.len() / gas.width();
         while looks <= gas.samples {
-            if self.since == count || self.clock > self.until {
+            if self.candidates == self.upto || self.clock > self.until {
                 self.follow(&mut followers, law, level)?;
                 if monitor.is_cancelled() {
                     return Ok(());
@@ -503,38 +540,45 @@ impl<'a> Batch<'a> {
                     let deviation = NOISE * most / DEVIATIONS;
                     self.until = self.clock + deviation * deviation / noise;
                 }
-                self.since = 0;
-                for i in 0..count {
-                    self.bound(i);
+                self.upto = self.candidates + count as u64;
+                let scale = 1.0 / (self.fastest * self.fastest);
+                for (bound, v) in self.bounds.iter_mut().zip(&self.velocities) {
+                    *bound = meeting::bound(v.dot(*v) * scale);
                 }
             }
-            self.since += 1;
-            self.clock += between / self.fastest;
-            let (pair, chance) = self.next();
-            if !self.may_meet(pair, chance) {
-                continue;
-            }
-            let [i, j] = pair;
-            if self.bounds[i] == f32::INFINITY || self.bounds[j] == f32::INFINITY {
-                self.follow(&mut followers, law, level)?;
-            }
-            if gas.heating > 0.0 {
-                self.heat(i, HEATED[0]);
-                self.heat(j, HEATED[1]);
-            }
-            let kinds = self.order(i) * gas.kinds.len() + self.order(j);
-            let candidate = Candidate {
-                pair,
-                chance,
-                number: self.number(self.candidates - 1),
-                time: self.clock,
-            };
-            self.waiting[kinds].candidates.push(candidate);
-            (self.bounds[i], self.bounds[j]) = (f32::INFINITY, f32::INFINITY);
-            self.waits += 1;
             // Not more than may be followed before the next look.
-            let left = each * looks as f64 - self.whole.collisions;
-            if self.waits == TOGETHER || self.waits as f64 >= left {
+            let left = (each * looks as f64 - self.whole.collisions).ceil() as usize;
+            let most = TOGETHER.min(left) - self.waits;
+            let row = self.candidates - self.candidates % AHEAD as u64;
+            let (end, clock) = self.sieve(between / self.fastest, most);
+            let mut sum = 0.0;
+            for k in 0..self.sieved.len() {
+                let (place, time) = self.sieved[k];
+                (self.candidates, self.clock) = (row + place as u64 + 1, time);
+                let (pair, chance) = self.ahead.get(place);
+                if gas.heating > 0.0 {
+                    self.heat(pair[0], HEATED[0]);
+                    self.heat(pair[1], HEATED[1]);
+                }
+                for i in pair {
+                    sum += self.velocities[i].x + self.velocities[i].z; // fetches what will be asked for
+                    if turns {
+                        sum += self.rotations[i].time;
+                    }
+                }
+                let kinds = self.order(pair[0]) * gas.kinds.len() + self.order(pair[1]);
+                let candidate = Candidate {
+                    pair,
+                    chance,
+                    number: self.number(self.candidates - 1),
+                    time,
+                };
+                self.waiting[kinds].candidates.push(candidate);
+            }
+            std::hint::black_box(sum);
+            self.waits += self.sieved.len();
+            (self.candidates, self.clock) = (row + end as u64, clock);
+            if self.sieved.len() == most || end < AHEAD {
                 self.follow(&mut followers, law, level)?;
             }
             while looks <= gas.samples && self.whole.collisions >= each * looks as f64 {
@@ -551,11 +595,14 @@ impl<'a> Batch<'a> {
     /// Finds the largest speed. Where it has fallen far, takes off what rounding has given to the centre of mass; where it is faint, multiplies velocities, but for the spins of balls that contacts do not turn, and turns back the clock.
     #[inline(always)]
     fn lift(&mut self) -> f64 {
-        let mut most: f64 = 0.0;
-        for v in &self.velocities {
-            most = most.max(v.dot(*v));
+        let mut most = [0.0; LANES];
+        for some in self.velocities.chunks(LANES) {
+            for (most, v) in most.iter_mut().zip(some) {
+                let square = v.dot(*v);
+                *most = if square > *most { square } else { *most };
+            }
         }
-        let most = most.sqrt();
+        let most = most.into_iter().fold(0.0, f64::max).sqrt();
         if self.slowest == 0.0 {
             self.slowest = FAR * most;
         }
@@ -602,7 +649,7 @@ impl<'a> Batch<'a> {
             self.candidates as f64,
             self.fastest,
             self.until,
-            self.since as f64,
+            self.upto as f64,
             self.slowest,
             self.rows.len() as f64,
         ];
@@ -635,7 +682,7 @@ impl<'a> Batch<'a> {
             candidates,
             fastest,
             until,
-            since,
+            upto,
             slowest,
             looks,
         ] = numbers.first_chunk().expect("they are more");
@@ -644,7 +691,7 @@ impl<'a> Batch<'a> {
         }
         (self.clock, self.past, self.exponent) = (clock, past, exponent as i32);
         self.candidates = candidates as u64;
-        (self.fastest, self.until, self.since) = (fastest, until, since as usize);
+        (self.fastest, self.until, self.upto) = (fastest, until, upto as u64);
         self.slowest = slowest;
         self.whole = Whole::of(&numbers[9..]);
         let (rows, rest) = rest.split_at((self.gas.samples + 1) * self.gas.width());
