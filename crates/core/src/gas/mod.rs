@@ -12,6 +12,7 @@
 
 mod meeting;
 mod moments;
+mod row;
 
 pub use moments::{BIN, BINS, GAS_KIND, GAS_WHOLE};
 
@@ -21,13 +22,14 @@ use crate::pair::{
     Approach, DrawRows, Ending, Follower, FreeBody, Outcome, PairState, Partner, Trouble, failed,
     normals,
 };
-use crate::random::{of_candidate, of_candidates, of_impact};
+use crate::random::{of_candidate, of_impact};
 use crate::simd::{LANES, Level};
 use crate::threads::{Monitor, Resources};
 use crate::{Error, memory};
 use meeting::{Candidate, Candidates, Meeting, bound};
 use moments::{Distributions, SpeciesSums, Whole};
 use pulp::{Simd, WithSimd};
+use row::{ROW, Row};
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
 use std::sync::Mutex;
@@ -268,11 +270,11 @@ struct Batch<'a> {
     past: f64,
     exponent: i32,
     whole: Whole,
-    /// Candidates so far, and a row of [`AHEAD`] of which the next is one.
+    /// Candidates so far, and a row of which the next is one.
     candidates: u64,
     ahead: Row,
     /// The places in it of those that may meet, and the time at each.
-    sieved: Vec<(usize, f64)>,
+    sieved: [(usize, f64); ROW],
     /// The cross-section of each two kinds over the largest.
     sections: Vec<f64>,
     /// The majorant of u, and the time and the candidate until which it holds.
@@ -288,30 +290,6 @@ struct Batch<'a> {
     waits: usize,
 }
 
-/// Successive candidates: of each the two particles, and what decides whether they meet.
-struct Row {
-    /// The number of the first.
-    number: u64,
-    first: [i32; AHEAD],
-    second: [i32; AHEAD],
-    chance: [f64; AHEAD],
-}
-
-impl Row {
-    const NONE: Self = Self {
-        number: u64::MAX,
-        first: [0; AHEAD],
-        second: [0; AHEAD],
-        chance: [0.0; AHEAD],
-    };
-
-    #[inline(always)]
-    fn get(&self, place: usize) -> ([usize; 2], f64) {
-        let pair = [self.first[place] as usize, self.second[place] as usize];
-        (pair, self.chance[place])
-    }
-}
-
 /// Candidates of two kinds that are decided and followed together, those of them that meet, and from where.
 #[derive(Default)]
 struct Waiting {
@@ -320,8 +298,6 @@ struct Waiting {
     approaches: Vec<Approach>,
 }
 
-/// Candidates that are drawn at once: what they need of memory is fetched at once, too.
-const AHEAD: usize = 64;
 /// Most candidates that wait.
 const TOGETHER: usize = 128;
 /// The first draws for the line of an encounter, and then for phases; for the noise on each of its bodies; and on all particles after it.
@@ -406,7 +382,7 @@ impl<'a> Batch<'a> {
             whole: Whole::default(),
             candidates: 0,
             ahead: Row::NONE,
-            sieved: Vec::new(),
+            sieved: [(0, 0.0); ROW],
             sections,
             fastest: 0.0,
             until: 0.0,
@@ -439,53 +415,30 @@ impl<'a> Batch<'a> {
     }
 
     /// Finds those that may meet of the next candidates: up to the end of a row or of the majorant of u, until there are so many, or until a particle has
-    /// met another one before. Returns the place in the row behind the last one and the time then.
+    /// met another one before. Returns the place in the row behind the last one, the time then, and their number.
     #[inline(always)]
-    fn sieve(&mut self, between: f64, most: usize) -> (usize, f64) {
-        let start = self.candidates as usize % AHEAD;
-        let row = self.candidates - start as u64;
-        if self.ahead.number != row {
-            self.draw(row);
-        }
-        let end = (start as u64 + self.upto - self.candidates).min(AHEAD as u64) as usize;
+    fn sieve(&mut self, between: f64, most: usize) -> (usize, f64, usize) {
+        let start = self.candidates as usize % ROW;
+        let row = self.number(self.candidates - start as u64);
+        self.ahead.draw(self.gas.seed, row, self.velocities.len());
+        let end = (start as u64 + self.upto - self.candidates).min(ROW as u64) as usize;
         let always = self.gas.heating > 0.0;
-        let mut clock = self.clock;
-        self.sieved.clear();
+        let (mut clock, mut count) = (self.clock, 0);
         for place in start..end {
             let ([i, j], part) = self.ahead.get(place);
-            let sum = self.bounds[i] + self.bounds[j];
-            if sum == f32::INFINITY || self.sieved.len() == most || clock > self.until {
-                return (place, clock);
+            let (one, two) = (self.bounds[i], self.bounds[j]);
+            if one + two == f32::INFINITY || count == most || clock > self.until {
+                return (place, clock, count);
             }
             clock += between;
-            // If not, u is certainly less than this part of its majorant.
-            if f64::from(sum) > part || always {
-                (self.bounds[i], self.bounds[j]) = (f32::INFINITY, f32::INFINITY);
-                self.sieved.push((place, clock));
-            }
+            // If not, u is certainly less than this part of its majorant. Nobody could foresee which way a branch would go.
+            let may = f64::from(one + two) > part || always;
+            self.bounds[i] = if may { f32::INFINITY } else { one };
+            self.bounds[j] = if may { f32::INFINITY } else { two };
+            self.sieved[count] = (place, clock);
+            count += usize::from(may);
         }
-        (end, clock)
-    }
-
-    /// Draws a row of candidates.
-    #[inline(always)]
-    fn draw(&mut self, first: u64) {
-        self.ahead.number = first;
-        let mut numbers = [(0.0, 0.0); AHEAD];
-        of_candidates(self.gas.seed, self.number(first), &mut numbers);
-        let others = (self.velocities.len() - 1) as f64;
-        let pairs = (others + 1.0) * others;
-        // By itself, this loop is compiled for vectors: all are whole numbers, exact below 2⁵³.
-        for (k, (which, chance)) in numbers.into_iter().enumerate() {
-            let place = (which * pairs).floor();
-            let i = (place / others).floor();
-            let i = if i * others > place { i - 1.0 } else { i };
-            let j = place - i * others;
-            let j = if j < i { j } else { j + 1.0 };
-            self.ahead.first[k] = i as i32;
-            self.ahead.second[k] = j as i32;
-            self.ahead.chance[k] = chance;
-        }
+        (end, clock, count)
     }
 
     /// Finds the bound of a particle.
@@ -549,11 +502,10 @@ impl<'a> Batch<'a> {
             // Not more than may be followed before the next look.
             let left = (each * looks as f64 - self.whole.collisions).ceil() as usize;
             let most = TOGETHER.min(left) - self.waits;
-            let row = self.candidates - self.candidates % AHEAD as u64;
-            let (end, clock) = self.sieve(between / self.fastest, most);
+            let row = self.candidates - self.candidates % ROW as u64;
+            let (end, clock, count) = self.sieve(between / self.fastest, most);
             let mut sum = 0.0;
-            for k in 0..self.sieved.len() {
-                let (place, time) = self.sieved[k];
+            for (place, time) in self.sieved.into_iter().take(count) {
                 (self.candidates, self.clock) = (row + place as u64 + 1, time);
                 let (pair, chance) = self.ahead.get(place);
                 if gas.heating > 0.0 {
@@ -576,9 +528,9 @@ impl<'a> Batch<'a> {
                 self.waiting[kinds].candidates.push(candidate);
             }
             std::hint::black_box(sum);
-            self.waits += self.sieved.len();
+            self.waits += count;
             (self.candidates, self.clock) = (row + end as u64, clock);
-            if self.sieved.len() == most || end < AHEAD {
+            if count == most || end < ROW {
                 self.follow(&mut followers, law, level)?;
             }
             while looks <= gas.samples && self.whole.collisions >= each * looks as f64 {

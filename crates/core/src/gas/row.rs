@@ -1,0 +1,78 @@
+//! Candidates of a gas, drawn a row at a time.
+
+use crate::random::of_candidates;
+use crate::simd::Level;
+use pulp::{Simd, WithSimd};
+
+/// Candidates of a row.
+pub(super) const ROW: usize = 64;
+
+/// Successive candidates: of each the two particles, and what decides whether they meet.
+pub(super) struct Row {
+    /// The number of the first.
+    number: u64,
+    pairs: [[i32; ROW]; 2],
+    chances: [f64; ROW],
+}
+
+impl Row {
+    /// That of no candidates.
+    pub const NONE: Self = Self {
+        number: u64::MAX,
+        pairs: [[0; ROW]; 2],
+        chances: [0.0; ROW],
+    };
+
+    /// The candidate in a place.
+    #[inline(always)]
+    pub fn get(&self, place: usize) -> ([usize; 2], f64) {
+        let [first, second] = &self.pairs;
+        let pair = [first[place] as usize, second[place] as usize];
+        (pair, self.chances[place])
+    }
+
+    /// Draws the row that begins with this number, of so many particles, if it is not there.
+    #[inline(always)]
+    pub fn draw(&mut self, seed: u64, number: u64, particles: usize) {
+        if self.number != number {
+            self.number = number;
+            let row = self;
+            Level::best().run(DrawnRow {
+                row,
+                seed,
+                particles,
+            });
+        }
+    }
+}
+
+/// A row that is to be drawn.
+struct DrawnRow<'a> {
+    row: &'a mut Row,
+    seed: u64,
+    particles: usize,
+}
+
+impl WithSimd for DrawnRow<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let mut numbers = [(0.0, 0.0); ROW];
+        of_candidates(self.seed, self.row.number, &mut numbers);
+        let others = (self.particles - 1) as f64;
+        let pairs = (others + 1.0) * others;
+        let [first, second] = &mut self.row.pairs;
+        // By itself, this loop is compiled for vectors; all are whole numbers, exact below 2⁵³.
+        for k in 0..ROW {
+            let place = (numbers[k].0 * pairs).floor();
+            let i = (place / others).floor();
+            let i = if i * others > place { i - 1.0 } else { i };
+            let j = place - i * others;
+            let j = if j < i { j } else { j + 1.0 };
+            first[k] = i as i32;
+            second[k] = j as i32;
+            self.row.chances[k] = numbers[k].1;
+        }
+    }
+}
