@@ -1,6 +1,7 @@
 //! Which candidates of a gas come within reach of each other, and on which lines: many at once, one in each lane.
 
 use super::TOGETHER;
+use super::row::bound;
 use crate::math::{Vector, Vectors};
 use crate::pair::{Follower, approach};
 use crate::random::of_some_candidates;
@@ -8,9 +9,6 @@ use crate::simd::elementary::sincos_in_lanes;
 use crate::simd::{LANES, Pack};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
-
-/// What is more than the rounding of a bound and of the sum of two.
-const ROUNDED: f32 = 1.0 + 8.0 * f32::EPSILON;
 
 /// Two particles that may meet.
 #[derive(Debug, Clone, Copy)]
@@ -37,7 +35,7 @@ pub(super) struct Meeting {
 pub(super) struct Candidates<'a, 'b, 'c> {
     pub candidates: &'a [Candidate],
     pub velocities: &'a mut [Vector],
-    pub bounds: &'a mut [f32],
+    pub bounds: &'a mut [u16],
     /// The majorant of u, and the cross-section of these two kinds over the largest.
     pub fastest: f64,
     pub section: f64,
@@ -54,12 +52,6 @@ pub(super) struct Candidates<'a, 'b, 'c> {
 pub(super) struct Decided {
     pub touched: usize,
     pub beyond: usize,
-}
-
-/// No less than the speed of a particle over the majorant of u, from the square of that.
-#[inline(always)]
-pub(super) fn bound(square: f64) -> f32 {
-    (square as f32).sqrt() * ROUNDED + f32::MIN_POSITIVE.sqrt()
 }
 
 impl WithSimd for Candidates<'_, '_, '_> {

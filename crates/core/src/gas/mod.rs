@@ -26,10 +26,10 @@ use crate::random::{of_candidate, of_impact};
 use crate::simd::{LANES, Level};
 use crate::threads::{Monitor, Resources};
 use crate::{Error, memory};
-use meeting::{Candidate, Candidates, Meeting, bound};
+use meeting::{Candidate, Candidates, Meeting};
 use moments::{Distributions, SpeciesSums, Whole};
 use pulp::{Simd, WithSimd};
-use row::{ROW, Row};
+use row::{ROW, Row, WAITS, bound};
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
 use std::sync::Mutex;
@@ -203,6 +203,12 @@ impl Gas<'_> {
             .sum()
     }
 
+    /// The largest reach.
+    fn reach(&self) -> f64 {
+        let all = self.kinds.iter().map(|kind| kind.body.reach);
+        all.fold(0.0, f64::max)
+    }
+
     /// The variance that a component of the velocity gains in a time, over the time.
     fn noise(&self, inverse_mass: f64) -> f64 {
         2.0 / 3.0 * self.heating * inverse_mass
@@ -212,12 +218,12 @@ impl Gas<'_> {
         let holds = self.collisions.is_finite() && self.collisions > 0.0;
         Error::unless(holds, "collisions", self.collisions, "finite and > 0")?;
         let each = self.each() as f64;
-        let holds = each <= f64::from(i32::MAX);
+        let holds = each <= f64::from(u32::MAX);
         Error::unless(
             holds,
             "particles",
             each,
-            "at most 2³¹ − 1 in each of the batches",
+            "less than 2³² for each of the batches",
         )?;
         for kind in &self.kinds {
             let power = self.heating * kind.body.inverse_mass;
@@ -257,9 +263,8 @@ struct Batch<'a> {
     number: usize,
     /// By themselves: many candidates are refused for which nothing else is asked.
     velocities: Vec<Vector>,
-    /// No less than the speed of each over the majorant of u, or infinite while it is of a candidate that waits. They stay in the caches, and most
-    /// candidates are refused by them alone.
-    bounds: Vec<f32>,
+    /// The [`bound`] of the speed of each, or [`WAITS`]. They stay in the caches, and most candidates are refused by them alone.
+    bounds: Vec<u16>,
     rotations: Vec<ParticleRotation>,
     /// The time up to which each has been heated, if they are.
     heated: Vec<f64>,
@@ -275,8 +280,6 @@ struct Batch<'a> {
     ahead: Row,
     /// The places in it of those that may meet, and the time at each.
     sieved: [(usize, f64); ROW],
-    /// The cross-section of each two kinds over the largest.
-    sections: Vec<f64>,
     /// The majorant of u, and the time and the candidate until which it holds.
     fastest: f64,
     until: f64,
@@ -354,18 +357,6 @@ impl<'a> Batch<'a> {
             settle(&mut velocities[start..], &mut rotations[start..], kind);
             ends.push(velocities.len());
         }
-        let most = gas
-            .kinds
-            .iter()
-            .map(|kind| kind.body.reach)
-            .fold(0.0, f64::max);
-        let each_two = gas
-            .kinds
-            .iter()
-            .flat_map(|one| gas.kinds.iter().map(|two| one.body.reach + two.body.reach));
-        let sections = each_two
-            .map(|both| both * both / (4.0 * most * most))
-            .collect();
         let mut waiting = Vec::new();
         waiting.resize_with(gas.kinds.len() * gas.kinds.len(), Waiting::default);
         Ok(Self {
@@ -383,7 +374,6 @@ impl<'a> Batch<'a> {
             candidates: 0,
             ahead: Row::NONE,
             sieved: [(0, 0.0); ROW],
-            sections,
             fastest: 0.0,
             until: 0.0,
             upto: 0,
@@ -425,16 +415,16 @@ impl<'a> Batch<'a> {
         let always = self.gas.heating > 0.0;
         let (mut clock, mut count) = (self.clock, 0);
         for place in start..end {
-            let ([i, j], part) = self.ahead.get(place);
+            let ([i, j], _) = self.ahead.get(place);
             let (one, two) = (self.bounds[i], self.bounds[j]);
-            if one + two == f32::INFINITY || count == most || clock > self.until {
+            if one == WAITS || two == WAITS || count == most || clock > self.until {
                 return (place, clock, count);
             }
             clock += between;
             // If not, u is certainly less than this part of its majorant. Nobody could foresee which way a branch would go.
-            let may = f64::from(one + two) > part || always;
-            self.bounds[i] = if may { f32::INFINITY } else { one };
-            self.bounds[j] = if may { f32::INFINITY } else { two };
+            let may = u32::from(one) + u32::from(two) > self.ahead.part(place) || always;
+            self.bounds[i] = if may { WAITS } else { one };
+            self.bounds[j] = if may { WAITS } else { two };
             self.sieved[count] = (place, clock);
             count += usize::from(may);
         }
@@ -461,11 +451,7 @@ impl<'a> Batch<'a> {
         }
         let count = self.velocities.len();
         let each = 0.5 * count as f64 * gas.collisions / gas.samples as f64;
-        let reach = gas
-            .kinds
-            .iter()
-            .map(|kind| kind.body.reach)
-            .fold(0.0, f64::max);
+        let reach = gas.reach();
         let area = PI * (2.0 * reach) * (2.0 * reach);
         let pairs = count as f64 * (count - 1) as f64;
         // n/N is 1/V, and half of the ordered pairs are the pairs.
@@ -496,7 +482,7 @@ impl<'a> Batch<'a> {
                 self.upto = self.candidates + count as u64;
                 let scale = 1.0 / (self.fastest * self.fastest);
                 for (bound, v) in self.bounds.iter_mut().zip(&self.velocities) {
-                    *bound = meeting::bound(v.dot(*v) * scale);
+                    *bound = row::bound(v.dot(*v) * scale);
                 }
             }
             // Not more than may be followed before the next look.
@@ -711,8 +697,11 @@ impl<'a> Batch<'a> {
         if self.waits == 0 {
             return Ok(());
         }
-        let seed = self.gas.seed;
+        let Gas { seed, kinds, .. } = self.gas;
+        let (seed, reach) = (*seed, self.gas.reach());
         for (i, follower) in followers.iter_mut().enumerate() {
+            let [one, two] = [i / kinds.len(), i % kinds.len()].map(|kind| kinds[kind].body.reach);
+            let both = one + two;
             let mut waiting = std::mem::take(&mut self.waiting[i]);
             let Waiting {
                 candidates,
@@ -724,7 +713,7 @@ impl<'a> Batch<'a> {
                 velocities: &mut self.velocities,
                 bounds: &mut self.bounds,
                 fastest: self.fastest,
-                section: self.sections[i],
+                section: both * both / (4.0 * reach * reach),
                 seed,
                 draw: LINE,
                 follower,

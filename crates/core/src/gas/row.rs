@@ -7,12 +7,26 @@ use pulp::{Simd, WithSimd};
 /// Candidates of a row.
 pub(super) const ROW: usize = 64;
 
+/// Parts of the majorant of u.
+const PARTS: f64 = 32768.0;
+/// The bound of a particle that is of a candidate that waits.
+pub(super) const WAITS: u16 = u16::MAX;
+
+/// More than the speed of a particle, in [`PARTS`] of the majorant of u, from the square of it over that of the majorant; or more than all of them.
+#[inline(always)]
+pub(super) fn bound(square: f64) -> u16 {
+    let rounded = PARTS as f32 * (1.0 + 4.0 * f32::EPSILON);
+    (((square as f32).sqrt() * rounded) as u16).min(WAITS - 2) + 1
+}
+
 /// Successive candidates: of each the two particles, and what decides whether they meet.
 pub(super) struct Row {
     /// The number of the first.
     number: u64,
-    pairs: [[i32; ROW]; 2],
+    pairs: [[u32; ROW]; 2],
     chances: [f64; ROW],
+    /// What decides, in [`PARTS`], rounded down.
+    parts: [u32; ROW],
 }
 
 impl Row {
@@ -21,6 +35,7 @@ impl Row {
         number: u64::MAX,
         pairs: [[0; ROW]; 2],
         chances: [0.0; ROW],
+        parts: [0; ROW],
     };
 
     /// The candidate in a place.
@@ -29,6 +44,12 @@ impl Row {
         let [first, second] = &self.pairs;
         let pair = [first[place] as usize, second[place] as usize];
         (pair, self.chances[place])
+    }
+
+    /// What decides the candidate in a place, in [`PARTS`], rounded down.
+    #[inline(always)]
+    pub fn part(&self, place: usize) -> u32 {
+        self.parts[place]
     }
 
     /// Draws the row that begins with this number, of so many particles, if it is not there.
@@ -44,6 +65,12 @@ impl Row {
             });
         }
     }
+}
+
+/// A whole number below 2³²: the last bits of 2⁵² + x are those of x.
+#[inline(always)]
+fn whole(x: f64) -> u32 {
+    (x + 2.0_f64.powi(52)).to_bits() as u32
 }
 
 /// A row that is to be drawn.
@@ -63,16 +90,18 @@ impl WithSimd for DrawnRow<'_> {
         let others = (self.particles - 1) as f64;
         let pairs = (others + 1.0) * others;
         let [first, second] = &mut self.row.pairs;
-        // By itself, this loop is compiled for vectors; all are whole numbers, exact below 2⁵³.
+        // By itself, this loop is compiled for vectors. All are whole numbers, exact below 2⁵³.
         for k in 0..ROW {
             let place = (numbers[k].0 * pairs).floor();
             let i = (place / others).floor();
             let i = if i * others > place { i - 1.0 } else { i };
             let j = place - i * others;
             let j = if j < i { j } else { j + 1.0 };
-            first[k] = i as i32;
-            second[k] = j as i32;
-            self.row.chances[k] = numbers[k].1;
+            let chance = numbers[k].1;
+            first[k] = whole(i);
+            second[k] = whole(j);
+            self.row.chances[k] = chance;
+            self.row.parts[k] = whole((PARTS * chance).floor());
         }
     }
 }
