@@ -23,7 +23,7 @@ pub(super) struct Candidate {
 
 /// Two particles that come within reach of each other.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Meeting {
+pub(super) struct MeetingLine {
     pub candidate: Candidate,
     /// Their relative speed.
     pub speed: f64,
@@ -44,7 +44,7 @@ pub(super) struct Candidates<'a, 'b, 'c> {
     pub draw: u32,
     pub follower: &'a Follower<'b, 'c>,
     /// Receives those that meet; smooth balls touch at once instead.
-    pub meetings: &'a mut Vec<Meeting>,
+    pub meetings: &'a mut Vec<MeetingLine>,
 }
 
 /// How many have touched, and how many were faster than the majorant.
@@ -93,11 +93,11 @@ impl WithSimd for Candidates<'_, '_, '_> {
             let apart = approach(direction, direction.across(), squares.sqrt(), around);
             if smooth {
                 let after = self.follower.touch(both, apart, (self.seed, &numbers));
-                for i in 0..2 {
-                    both[i] = both[i].or(meet, after[i]);
-                    let squares = both[i].dot(both[i]) * scale;
+                for (i, after) in after.into_iter().enumerate() {
+                    let after = both[i].or(meet, after);
+                    let squares = after.dot(after) * scale;
                     for (lane, candidate) in some.iter().enumerate() {
-                        self.velocities[candidate.pair[i]] = both[i].lane(lane);
+                        self.velocities[candidate.pair[i]] = after.lane(lane);
                         self.bounds[candidate.pair[i]] = bound(squares.as_slice()[lane]);
                     }
                 }
@@ -108,7 +108,7 @@ impl WithSimd for Candidates<'_, '_, '_> {
                     decided.touched += usize::from(meet.get(lane));
                 } else if meet.get(lane) {
                     let (speed, apart) = (speed.as_slice()[lane], apart.lane(lane));
-                    self.meetings.push(Meeting {
+                    self.meetings.push(MeetingLine {
                         candidate,
                         speed,
                         apart,

@@ -26,10 +26,10 @@ use crate::random::{of_candidate, of_impact};
 use crate::simd::{LANES, Level};
 use crate::threads::{Monitor, Resources};
 use crate::{Error, memory};
-use meeting::{Candidate, Candidates, Meeting};
+use meeting::{Candidate, Candidates, MeetingLine};
 use moments::{Distributions, SpeciesSums, Whole};
 use pulp::{Simd, WithSimd};
-use row::{ROW, Row, WAITS, bound};
+use row::{CandidateRow, ROW, WAITS, bound};
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
 use std::sync::Mutex;
@@ -277,7 +277,7 @@ struct Batch<'a> {
     whole: Whole,
     /// Candidates so far, and a row of which the next is one.
     candidates: u64,
-    ahead: Row,
+    ahead: CandidateRow,
     /// The places in it of those that may meet, and the time at each.
     sieved: [(usize, f64); ROW],
     /// The majorant of u, and the time and the candidate until which it holds.
@@ -297,7 +297,7 @@ struct Batch<'a> {
 #[derive(Default)]
 struct Waiting {
     candidates: Vec<Candidate>,
-    meetings: Vec<Meeting>,
+    meetings: Vec<MeetingLine>,
     approaches: Vec<Approach>,
 }
 
@@ -372,7 +372,7 @@ impl<'a> Batch<'a> {
             exponent: 0,
             whole: Whole::default(),
             candidates: 0,
-            ahead: Row::NONE,
+            ahead: CandidateRow::NONE,
             sieved: [(0, 0.0); ROW],
             fastest: 0.0,
             until: 0.0,
@@ -652,7 +652,7 @@ impl<'a> Batch<'a> {
 
     /// The states of two particles that meet, and how long each has turned freely.
     #[inline(always)]
-    fn approach(&self, meeting: &Meeting) -> Result<Approach, Error> {
+    fn approach(&self, meeting: &MeetingLine) -> Result<Approach, Error> {
         let Candidate {
             pair, number, time, ..
         } = meeting.candidate;

@@ -20,7 +20,7 @@ pub(super) fn bound(square: f64) -> u16 {
 }
 
 /// Successive candidates: of each the two particles, and what decides whether they meet.
-pub(super) struct Row {
+pub(super) struct CandidateRow {
     /// The number of the first.
     number: u64,
     pairs: [[u32; ROW]; 2],
@@ -29,7 +29,7 @@ pub(super) struct Row {
     parts: [u32; ROW],
 }
 
-impl Row {
+impl CandidateRow {
     /// That of no candidates.
     pub const NONE: Self = Self {
         number: u64::MAX,
@@ -58,7 +58,7 @@ impl Row {
         if self.number != number {
             self.number = number;
             let row = self;
-            Level::best().run(DrawnRow {
+            Level::best().run(DrawnCandidates {
                 row,
                 seed,
                 particles,
@@ -74,13 +74,13 @@ fn whole(x: f64) -> u32 {
 }
 
 /// A row that is to be drawn.
-struct DrawnRow<'a> {
-    row: &'a mut Row,
+struct DrawnCandidates<'a> {
+    row: &'a mut CandidateRow,
     seed: u64,
     particles: usize,
 }
 
-impl WithSimd for DrawnRow<'_> {
+impl WithSimd for DrawnCandidates<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -91,17 +91,52 @@ impl WithSimd for DrawnRow<'_> {
         let pairs = (others + 1.0) * others;
         let [first, second] = &mut self.row.pairs;
         // By itself, this loop is compiled for vectors. All are whole numbers, exact below 2⁵³.
-        for k in 0..ROW {
-            let place = (numbers[k].0 * pairs).floor();
+        for (k, &(which, chance)) in numbers.iter().enumerate() {
+            let place = (which * pairs).floor();
             let i = (place / others).floor();
             let i = if i * others > place { i - 1.0 } else { i };
             let j = place - i * others;
             let j = if j < i { j } else { j + 1.0 };
-            let chance = numbers[k].1;
             first[k] = whole(i);
             second[k] = whole(j);
             self.row.chances[k] = chance;
             self.row.parts[k] = whole((PARTS * chance).floor());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::of_candidate;
+
+    /// Of two particles as whole numbers say it, and no two of a pair are the same.
+    #[test]
+    fn a_row_is_of_pairs_in_their_order() {
+        for particles in [2, 3, 1000, 50_000_000] {
+            let mut row = CandidateRow::NONE;
+            row.draw(7, 128, particles);
+            for place in 0..ROW {
+                let (which, chance) = of_candidate(7, 128 + place as u64, 0);
+                let others = particles as u64 - 1;
+                let pair = (which * (particles as u64 * others) as f64) as u64;
+                let (i, j) = (pair / others, pair % others);
+                let j = if j < i { j } else { j + 1 };
+                assert_eq!(row.get(place), ([i as usize, j as usize], chance));
+                assert_eq!(row.part(place), (PARTS * chance) as u32);
+            }
+        }
+    }
+
+    /// Bounds are more than speeds, by no more than one part and rounding, and those of the fastest more than any part.
+    #[test]
+    fn bounds_are_more_than_speeds() {
+        for i in 0..100_000 {
+            let speed = 2.5 * crate::random::uniform(7, i, 0);
+            let bound = f64::from(bound(speed * speed));
+            let exact = PARTS * speed;
+            assert!(bound > exact.min(PARTS) && bound < f64::from(WAITS));
+            assert!(bound < exact * 1.000_001 + 1.01);
         }
     }
 }

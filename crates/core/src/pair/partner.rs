@@ -216,7 +216,9 @@ impl FreeBody {
     /// Turns it as it does in a time.
     #[inline(always)]
     pub fn turn(&mut self, body: &Partner, time: f64) {
-        (self.attitude, self.spin) = Rotation::new(body.top, self.attitude, self.spin).at(time);
+        if time != 0.0 {
+            (self.attitude, self.spin) = Rotation::new(body.top, self.attitude, self.spin).at(time);
+        }
     }
 
     #[inline(always)]
