@@ -1,11 +1,13 @@
 """The benchmarks compare only what computes the same physics, and compare it in the right direction."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from benchmarks import agreement, bodies, timing
+from benchmarks import agreement, bodies, encounters, timing
 from benchmarks.peers import brentq_grid, simulate, statistics
 from benchmarks.spinning import JOBS
 from benchmarks.timing import Times
@@ -13,6 +15,7 @@ from benchmarks.work import Array, Grid, Peer, Work
 
 WORK = Work(impacts=40)
 ENGINE = statistics.rows()[0]
+PAGE = Path(__file__).parents[2] / "docs" / "performance.md"
 
 
 def rounder(work: Work, angles: Array) -> Grid:
@@ -73,3 +76,18 @@ def test_the_spinning_job_has_the_engines_inertia() -> None:
         across, axial = job.inertia
         assert across == pytest.approx(job.body.transverse_inertia / job.body.mass, rel=1e-14)
         assert axial == pytest.approx(job.body.axial_inertia / job.body.mass, rel=1e-14)
+
+
+def test_the_page_has_the_rows_that_are_timed() -> None:
+    """Of bodies and encounters, each with the target that it has now."""
+    blocks = (
+        (bodies.YARDSTICK, bodies.ROWS),
+        (bodies.SPUN, bodies.RIGID),
+        *bodies.FRICTION,
+        (bodies.LEARN_YARDSTICK, (bodies.LEARN,)),
+    )
+    timed = {row.name: f"{row.target:g}" for _, rows in blocks for row in rows}
+    timed |= {row.name: "1" for row in encounters.rows()}
+    page = PAGE.read_text(encoding="utf-8")
+    line = r"^(?!Numba)(\S.*?) +[\d.e+]+ +[\d.e+]+   \([\d.e+]+ to [\d.e+]+\)   <= ([\d.]+)"
+    assert dict(re.findall(line, page, re.MULTILINE)) == timed
