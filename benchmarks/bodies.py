@@ -193,10 +193,8 @@ FRICTION = tuple(
     )
 )
 
-EVERY = (
-    *(YARDSTICK, *ROWS, SPUN, *RIGID, LEARN_YARDSTICK, LEARN),
-    *(row for smooth, rough in FRICTION for row in (smooth, *rough)),
-)
+BLOCKS = ((YARDSTICK, ROWS), (SPUN, RIGID), *FRICTION, (LEARN_YARDSTICK, (LEARN,)))
+EVERY = tuple(row for first, rows in BLOCKS for row in (first, *rows))
 
 
 @dataclass(frozen=True)
@@ -253,7 +251,7 @@ def timed(row: Row, threads: int = 1) -> Timed:
 
 def table(rounds: int, only: str = "") -> Iterator[str]:
     """Every row over the yardstick, one thread; `only` those whose name contains this."""
-    for yardstick, rows in ((YARDSTICK, ROWS), (SPUN, RIGID), *FRICTION, (LEARN_YARDSTICK, (LEARN,))):
+    for yardstick, rows in BLOCKS:
         chosen = [row for row in rows if only in row.name]
         if not chosen:
             continue

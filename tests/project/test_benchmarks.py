@@ -80,13 +80,7 @@ def test_the_spinning_job_has_the_engines_inertia() -> None:
 
 def test_the_page_has_the_rows_that_are_timed() -> None:
     """Of bodies and encounters, each with the target that it has now."""
-    blocks = (
-        (bodies.YARDSTICK, bodies.ROWS),
-        (bodies.SPUN, bodies.RIGID),
-        *bodies.FRICTION,
-        (bodies.LEARN_YARDSTICK, (bodies.LEARN,)),
-    )
-    timed = {row.name: f"{row.target:g}" for _, rows in blocks for row in rows}
+    timed = {row.name: f"{row.target:g}" for _, rows in bodies.BLOCKS for row in rows}
     timed |= {row.name: "1" for row in encounters.rows()}
     page = PAGE.read_text(encoding="utf-8")
     line = r"^(?!Numba)(\S.*?) +[\d.e+]+ +[\d.e+]+   \([\d.e+]+ to [\d.e+]+\)   <= ([\d.]+)"
