@@ -1,7 +1,7 @@
 //! Which candidates of a gas come within reach of each other, and on which lines: many at once, one in each lane.
 
-use super::TOGETHER;
 use super::row::bound;
+use super::{LINE, TOGETHER};
 use crate::math::{Vector, Vectors};
 use crate::pair::{Follower, approach};
 use crate::random::of_some_candidates;
@@ -19,6 +19,14 @@ pub(super) struct Candidate {
     /// Its number among the candidates of all batches.
     pub number: u64,
     pub time: f64,
+}
+
+impl Candidate {
+    /// The number with which its encounter draws: that of the next candidate, which itself takes only the draw 0.
+    #[inline(always)]
+    pub fn draws(&self) -> u64 {
+        self.number + 1
+    }
 }
 
 /// Two particles that come within reach of each other.
@@ -40,8 +48,6 @@ pub(super) struct Candidates<'a, 'b, 'c> {
     pub fastest: f64,
     pub section: f64,
     pub seed: u64,
-    /// The draw that the lines are found with.
-    pub draw: u32,
     pub follower: &'a Follower<'b, 'c>,
     /// Receives those that meet; smooth balls touch at once instead.
     pub meetings: &'a mut Vec<MeetingLine>,
@@ -65,11 +71,10 @@ impl WithSimd for Candidates<'_, '_, '_> {
         let (mut numbers, mut draws) = ([0; LANES], [(0.0, 0.0); TOGETHER]);
         let mut counters = [0; TOGETHER];
         for (counter, candidate) in counters.iter_mut().zip(self.candidates) {
-            *counter = candidate.number + 1;
+            *counter = candidate.draws();
         }
         let draws = &mut draws[..self.candidates.len()];
-        of_some_candidates(self.seed, &counters, self.draw, draws);
-        let scale = 1.0 / (self.fastest * self.fastest);
+        of_some_candidates(self.seed, &counters, LINE, draws);
         let smooth = self.follower.smooth_balls();
         let mut decided = Decided::default();
         let width = Pack::<S, 1>::WIDTH;
@@ -95,10 +100,11 @@ impl WithSimd for Candidates<'_, '_, '_> {
                 let after = self.follower.touch(both, apart, (self.seed, &numbers));
                 for (i, after) in after.into_iter().enumerate() {
                     let after = both[i].or(meet, after);
-                    let squares = after.dot(after) * scale;
+                    let squares = after.dot(after);
                     for (lane, candidate) in some.iter().enumerate() {
                         self.velocities[candidate.pair[i]] = after.lane(lane);
-                        self.bounds[candidate.pair[i]] = bound(squares.as_slice()[lane]);
+                        self.bounds[candidate.pair[i]] =
+                            bound(squares.as_slice()[lane], self.fastest);
                     }
                 }
             }
