@@ -27,23 +27,44 @@ fn spheroid([across, along]: [f64; 2]) -> Partner {
     Partner::new("body", AnyBody::from(body)).unwrap()
 }
 
-/// Four balls, without any symmetry.
-fn clump() -> Partner {
+fn of_balls(balls: &[[f64; 4]]) -> Partner {
     let ball = |&[x, y, z, radius]: &[f64; 4]| RigidBall {
         centre: Vector::new(x, y, z),
         radius,
     };
-    let balls: Vec<_> = [
+    let balls: Vec<_> = balls.iter().map(ball).collect();
+    let body = Rigid::clump(&balls, 0.1, Matter::Sum).unwrap();
+    Partner::new("body", AnyBody::from(&body)).unwrap()
+}
+
+/// Four balls, without any symmetry.
+fn clump() -> Partner {
+    of_balls(&[
         [0.6, 0.6, 0.6, 0.8],
         [0.6, -0.6, -0.6, 0.8],
         [-0.6, 0.6, -0.6, 0.7],
         [-0.6, -0.6, 0.6, 0.5],
-    ]
-    .iter()
-    .map(ball)
-    .collect();
-    let body = Rigid::clump(&balls, 0.1, Matter::Sum).unwrap();
-    Partner::new("body", AnyBody::from(&body)).unwrap()
+    ])
+}
+
+/// Balls at the corners of a tetrahedron, whose moments of inertia are equal.
+fn tetrahedron() -> Partner {
+    of_balls(&[
+        [0.6, 0.6, 0.6, 0.7],
+        [0.6, -0.6, -0.6, 0.7],
+        [-0.6, 0.6, -0.6, 0.7],
+        [-0.6, -0.6, 0.6, 0.7],
+    ])
+}
+
+/// Balls at the corners of a square; two moments of inertia are equal.
+fn square() -> Partner {
+    of_balls(&[
+        [0.8, 0.0, 0.0, 0.6],
+        [-0.8, 0.0, 0.0, 0.6],
+        [0.0, 0.8, 0.0, 0.6],
+        [0.0, -0.8, 0.0, 0.6],
+    ])
 }
 
 /// A law of one's own whose impulse is no number.
@@ -325,8 +346,14 @@ fn nothing_touches_before_the_first_contact() {
 #[test]
 fn any_number_of_threads_gives_the_same_encounters() {
     let (one, two, three) = (dumbbell(1.0), dumbbell(0.1), clump());
-    for bodies in [[&three, &one], [&one, &two]] {
-        let run = drawn(bodies, 600);
+    for (bodies, spin) in [
+        ([&three, &one], 1.0),
+        ([&three, &three], 1.0),
+        ([&three, &three], 0.0),
+        ([&one, &two], 1.0),
+    ] {
+        let mut run = drawn(bodies, 600);
+        run.rotational[0] *= spin;
         let law = frictionless(0.8);
         let first = record(&run, &law, 1, Level::Scalar);
         for (threads, level) in Level::available().enumerate() {
@@ -378,9 +405,9 @@ fn an_impulse_that_is_no_number_ends_an_encounter() {
     assert!(matches!(own, Err(Trouble::Fault(Fault::NotFinite(_)))));
 }
 
-/// Balls on an axis and spheroids without friction, which are followed in lanes, end as those that are followed one by one: dumbbells of any aspect ratio, a sphere
-/// whose centre of mass is not at its centre, spheres, long and flat spheroids; with coefficients that depend on the speed or scatter, and where contacts
-/// accumulate.
+/// Balls and spheroids without friction, which are followed in lanes, end as those that are followed one by one: dumbbells of any aspect ratio, a sphere
+/// whose centre of mass is not at its centre, spheres, long and flat spheroids, clumps with three, two or one moment of inertia; with coefficients that depend on
+/// the speed or scatter, where contacts accumulate, and where the bodies do not turn at first.
 #[test]
 fn lanes_follow_what_one_by_one_follows() {
     let loaded = LoadedSphere::new(0.7, 0.3, 0.4, 0.3).unwrap();
@@ -393,6 +420,9 @@ fn lanes_follow_what_one_by_one_follows() {
         loaded,
         spheroid([1.0, 2.0]),
         spheroid([1.5, 0.5]),
+        clump(),
+        square(),
+        tetrahedron(),
     ];
     let material = Viscoelastic::new(1e6, 0.3, 1e-3, 1e3, 0.01).unwrap();
     let scattered = Material::Scattered(Scattered::new(0.8.into(), 0.1).unwrap());
@@ -404,8 +434,11 @@ fn lanes_follow_what_one_by_one_follows() {
     ];
     for (i, one) in bodies.iter().enumerate() {
         for two in &bodies[i..] {
-            for law in &laws {
-                let run = drawn([one, two], 150);
+            for (number, law) in laws.iter().enumerate() {
+                let mut run = drawn([one, two], 150);
+                if number == 2 {
+                    run.rotational = [0.0; 2];
+                }
                 let table = record(&run, law, 1, Level::best());
                 let mut hits = table.hits.chunks(12);
                 for (number, row) in rows(&table).iter().enumerate() {
@@ -422,16 +455,19 @@ fn lanes_follow_what_one_by_one_follows() {
                         own.push(*hit);
                     };
                     let found = encounter([one, two], law, before(row), chance, add).unwrap();
+                    let recorded: Vec<_> = hits.by_ref().take(row[0] as usize).collect();
+                    // What a search leaves grows with each contact that follows, until nothing can be said.
+                    let allowed = 1e-11 * 4.0_f64.powi(found.contacts as i32);
+                    if allowed > 1.0 {
+                        continue;
+                    }
                     assert_eq!(row[0], found.contacts as f64);
                     assert_eq!(row[1], f64::from(found.ending as u8));
-                    // What a search leaves grows with each contact that follows.
-                    let allowed = 1e-11 * 4.0_f64.powi(found.contacts as i32);
                     let near = |a: f64, b: f64| {
                         assert!((a - b).abs() < allowed * (1.0 + b.abs()), "{a} {b}");
                     };
                     near(row[2], found.time);
-                    for hit in &own[..found.contacts as usize] {
-                        let recorded = hits.next().unwrap();
+                    for (hit, recorded) in own.iter().zip(recorded) {
                         near(recorded[0], hit.time);
                         let vectors = [hit.normal, hit.point, hit.impulse];
                         let numbers = vectors.map(Vector::parts);

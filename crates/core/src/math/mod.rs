@@ -10,7 +10,7 @@ mod symmetric;
 mod vector;
 
 pub use quaternion::Quaternion;
-pub(crate) use quaternion::sum;
+pub(crate) use quaternion::{Quaternions, sum};
 pub use symmetric::Symmetric;
 pub(crate) use symmetric::UNITS;
 pub use vector::Vector;

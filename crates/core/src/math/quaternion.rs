@@ -1,6 +1,8 @@
 //! Rotations as unit quaternions.
 
-use super::Vector;
+use super::{Vector, Vectors};
+use crate::simd::{Mask, Pack};
+use pulp::{Scalar, Simd};
 use std::ops::{Add, Mul, Sub};
 
 /// A quaternion w + x**i** + y**j** + z**k**. One of length 1 is the rotation by 2 arccos w about (x, y, z), and as an attitude takes the
@@ -47,23 +49,17 @@ impl Quaternion {
         Self::new(part * w, part * x, part * y, part * z)
     }
 
-    /// The product of two whose length is 1 but for rounding, with length 1. Over many turns by the same angle rounding must not lean to one side, as it
-    /// does in w(1 − 10⁻¹⁶): so the turn's difference from 1 is multiplied, and what the last sum has lost is added with what the length lacks.
+    /// [`turned`].
     #[inline(always)]
     pub(crate) fn turned(self, turn: Self) -> Self {
-        let (a, b) = (self, turn);
-        let less = b.w - 1.0;
-        let (w, dw) = sum(a.w, a.w * less - a.x * b.x - a.y * b.y - a.z * b.z);
-        let (x, dx) = sum(a.x, a.x * less + a.w * b.x + a.y * b.z - a.z * b.y);
-        let (y, dy) = sum(a.y, a.y * less + a.w * b.y + a.z * b.x - a.x * b.z);
-        let (z, dz) = sum(a.z, a.z * less + a.w * b.z + a.x * b.y - a.y * b.x);
-        let part = 0.5 * (1.0 - w * w - x * x - y * y - z * z);
-        Self::new(
-            w + (dw + part * w),
-            x + (dx + part * x),
-            y + (dy + part * y),
-            z + (dz + part * z),
-        )
+        let [w, x, y, z] = turned(self.parts(), turn.parts());
+        Self::new(w, x, y, z)
+    }
+
+    /// The only lane of one in each.
+    #[inline(always)]
+    pub(crate) fn in_lane(self) -> Quaternions<Scalar> {
+        Quaternions::splat(Scalar::new(), self)
     }
 
     /// A vector of the body in the axes of space.
@@ -93,6 +89,30 @@ pub(crate) fn product<T: Part>([aw, ax, ay, az]: [T; 4], [bw, bx, by, bz]: [T; 4
     ]
 }
 
+/// The product of two whose length is 1 but for rounding, with length 1. Over many turns by the same angle rounding must not lean to one side, as it
+/// does in w(1 − 10⁻¹⁶): so the turn's difference from 1 is multiplied, and what the last sum has lost is added with what the length lacks.
+#[inline(always)]
+pub(crate) fn turned<T: Part + Sub<f64, Output = T>>(
+    [aw, ax, ay, az]: [T; 4],
+    [bw, bx, by, bz]: [T; 4],
+) -> [T; 4]
+where
+    f64: Mul<T, Output = T> + Sub<T, Output = T>,
+{
+    let less = bw - 1.0;
+    let (w, dw) = sum(aw, aw * less - ax * bx - ay * by - az * bz);
+    let (x, dx) = sum(ax, ax * less + aw * bx + ay * bz - az * by);
+    let (y, dy) = sum(ay, ay * less + aw * by + az * bx - ax * bz);
+    let (z, dz) = sum(az, az * less + aw * bz + ax * by - ay * bx);
+    let part = 0.5 * (1.0 - w * w - x * x - y * y - z * z);
+    [
+        w + (dw + part * w),
+        x + (dx + part * x),
+        y + (dy + part * y),
+        z + (dz + part * z),
+    ]
+}
+
 /// The square of its length.
 #[inline(always)]
 pub(crate) fn square<T: Part>([w, x, y, z]: [T; 4]) -> T {
@@ -119,7 +139,7 @@ where
 
 /// A sum, and what it has lost by rounding: D. E. Knuth, *The Art of Computer Programming* 2, theorem 4.2.2 B.
 #[inline(always)]
-pub(crate) fn sum(a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn sum<T: Part>(a: T, b: T) -> (T, T) {
     let sum = a + b;
     let second = sum - a;
     (sum, (a - (sum - second)) + (b - second))
@@ -133,5 +153,88 @@ impl Mul for Quaternion {
     fn mul(self, b: Self) -> Self {
         let [w, x, y, z] = product(self.parts(), b.parts());
         Self::new(w, x, y, z)
+    }
+}
+
+/// A unit quaternion in each lane.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Quaternions<S: Simd> {
+    pub w: Pack<S, 1>,
+    pub v: Vectors<S, 1>,
+}
+
+impl<S: Simd> Quaternions<S> {
+    /// The same one in every lane.
+    #[inline(always)]
+    pub fn splat(simd: S, of: Quaternion) -> Self {
+        Self {
+            w: Pack::splat(simd, of.w),
+            v: Vectors::splat(simd, Vector::new(of.x, of.y, of.z)),
+        }
+    }
+
+    #[inline(always)]
+    pub fn parts(self) -> [Pack<S, 1>; 4] {
+        [self.w, self.v.x, self.v.y, self.v.z]
+    }
+
+    #[inline(always)]
+    pub fn of([w, x, y, z]: [Pack<S, 1>; 4]) -> Self {
+        Self {
+            w,
+            v: Vectors { x, y, z },
+        }
+    }
+
+    /// The rotation by the second and then by this.
+    #[inline(always)]
+    pub fn times(self, second: Self) -> Self {
+        Self::of(product(self.parts(), second.parts()))
+    }
+
+    #[inline(always)]
+    pub fn normalized(self) -> Self {
+        let part = 1.0 / square(self.parts()).sqrt();
+        Self {
+            w: self.w * part,
+            v: self.v.times(part),
+        }
+    }
+
+    /// A vector after the rotation.
+    #[inline(always)]
+    pub fn rotate(self, v: Vectors<S, 1>) -> Vectors<S, 1> {
+        let [x, y, z] = rotated(self.parts(), [v.x, v.y, v.z]);
+        Vectors { x, y, z }
+    }
+
+    /// The rotation backward.
+    #[inline(always)]
+    pub fn inverse(self) -> Self {
+        Self {
+            v: self.v.times(-1.0),
+            ..self
+        }
+    }
+
+    /// The same, but those of `other` in the lanes of the mask.
+    #[inline(always)]
+    pub fn or(self, mask: Mask<S, 1>, other: Self) -> Self {
+        Self {
+            w: mask.select(other.w, self.w),
+            v: self.v.or(mask, other.v),
+        }
+    }
+
+    #[inline(always)]
+    pub fn put(&mut self, lane: usize, of: Quaternion) {
+        self.w.as_mut_slice()[lane] = of.w;
+        self.v.put(lane, Vector::new(of.x, of.y, of.z));
+    }
+
+    #[inline(always)]
+    pub fn lane(&self, lane: usize) -> Quaternion {
+        let Vector { x, y, z } = self.v.lane(lane);
+        Quaternion::new(self.w.as_slice()[lane], x, y, z)
     }
 }

@@ -114,7 +114,7 @@ impl Div<f64> for Vector {
 }
 
 /// A vector (x, y, z) in each lane; z is along the plane normal.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Vectors<S: Simd, const K: usize> {
     pub x: Pack<S, K>,
     pub y: Pack<S, K>,
@@ -130,6 +130,12 @@ impl<S: Simd, const K: usize> Vectors<S, K> {
             y: Pack::splat(simd, vector.y),
             z: Pack::splat(simd, vector.z),
         }
+    }
+
+    /// The components.
+    #[inline(always)]
+    pub const fn parts(self) -> [Pack<S, K>; 3] {
+        [self.x, self.y, self.z]
     }
 
     /// Scalar product.

@@ -1,11 +1,14 @@
 //! Bounds on what a body that moves freely can do, for certified steps.
 
+use crate::math::quaternion::Part;
+use std::ops::Mul;
+
 /// The largest |ω|² of a flight, from the principal moments and ω.
 ///
 /// With J₁ ≤ J₂ ≤ J₃, J₁J₃|ω|² − 2E(J₁ + J₃) + Λ² = Σω_i²(J_i − J₁)(J_i − J₃) = −ω₂²(J₂ − J₁)(J₃ − J₂) ≤ 0. The energy and Λ² are constant, so
 /// that |ω| is largest where ω₂ = 0: Ω² = |ω|² + ω₂²(J₂ − J₁)(J₃ − J₂)/(J₁J₃) with what it is now.
 #[inline(always)]
-pub(super) fn largest_spin(moments: [f64; 3], spin: [f64; 3]) -> f64 {
+pub(super) fn largest_spin<T: Part + Mul<f64, Output = T>>(moments: [f64; 3], spin: [T; 3]) -> T {
     let [x, y, z] = [spin[0] * spin[0], spin[1] * spin[1], spin[2] * spin[2]];
     let [a, b, c] = moments;
     let (squares, [least, middle, most]) = if (a - b) * (b - c) >= 0.0 {

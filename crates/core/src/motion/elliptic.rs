@@ -9,11 +9,12 @@
 //! Near the separatrix q is nearly 1, and with **Λ** along axis 3 η is infinite: there is none, and a series is used.
 
 use super::top::energy_error;
-use crate::math::{Quaternion, Vector};
+use crate::math::quaternion::{self, turned};
+use crate::math::{Quaternions, Vectors};
 use crate::shape::Top;
-use crate::simd::elementary::{exp_m1_in_lanes, sincos, sincos_in_lanes};
-use crate::simd::{Pack, one};
-use pulp::Scalar;
+use crate::simd::elementary::{exp_m1_in_lanes, sincos_in_lanes};
+use crate::simd::{Mask, Pack};
+use pulp::Simd;
 use std::f64::consts::PI;
 
 /// Terms of the theta functions, and the largest nome for which these are enough: q to the power `TERMS`² is less than rounding.
@@ -23,82 +24,100 @@ const LARGEST: f64 = 0.42;
 const LEAST: f64 = 1e-10;
 /// See [`nome`].
 const SERIES: f64 = 0.17;
+const NOME: [f64; 9] = [
+    1.0,
+    2.0,
+    15.0,
+    150.0,
+    1707.0,
+    20910.0,
+    268_616.0,
+    3_567_400.0,
+    48_555_069.0,
+];
 /// Terms less than this part of the first one are left out.
 const SMALL: f64 = 1e-18;
 
+/// A rotation in each lane.
 #[derive(Debug, Clone)]
-pub(super) struct Elliptic {
-    /// Axes 1, 2 and 3 among those of the body; the last one is turned round where they were left-handed.
+pub(crate) struct Elliptic<S: Simd> {
+    /// The axes of the body from the least moment to the largest: axes 1, 2 and 3 in the lanes that are `above`, else axes 3, 2 and 1. Axis 3 is turned round
+    /// where they would be left-handed.
     order: [usize; 3],
-    hand: f64,
-    moments: [f64; 3],
+    above: Mask<S, 1>,
+    hand: Pack<S, 1>,
+    moments: [Pack<S, 1>; 3],
     /// ω at the beginning.
-    first: [f64; 3],
+    first: [Pack<S, 1>; 3],
     /// J₁(J₁ − J₃) and J₂(J₂ − J₃): times ω₁² and ω₂² they are together Λ² − 2EJ₃, which is this.
-    across: [f64; 2],
-    beyond: f64,
+    across: [Pack<S, 1>; 2],
+    beyond: Pack<S, 1>,
     /// ν = `rate` t + `phase`.
-    rate: f64,
-    phase: f64,
+    rate: Pack<S, 1>,
+    phase: Pack<S, 1>,
     /// ½A₂.
-    turn: f64,
+    turn: Pack<S, 1>,
     /// Ω₁, Ω₂, Ω₃, each with the ratio of theta functions of 0.
-    sizes: [f64; 3],
+    sizes: [Pack<S, 1>; 3],
     /// The number of terms that are needed: of ϑ₃, of ϑ₁ and the real part of ϑ₁(ν − iη), and of ϑ₂ and the imaginary part.
     terms: usize,
-    squares: [f64; TERMS],
-    sines: [[f64; 2]; TERMS],
-    cosines: [[f64; 2]; TERMS],
+    squares: [Pack<S, 1>; TERMS],
+    sines: [Pack<S, 2>; TERMS],
+    cosines: [Pack<S, 2>; TERMS],
     /// The attitude at the beginning after the rotation back from that at the time 0 in the axes of **Λ**, in axes 1, 2 and 3.
-    start: Quaternion,
+    start: [Pack<S, 1>; 4],
 }
 
 /// The nome of a modulus m with its complement m′: A. Abramowitz and I. A. Stegun, *Handbook of Mathematical Functions*, 17.3.21, whose terms beyond these
 /// are less than rounding for ε ≤ [`SERIES`]. Where ε is larger, it is the root of that of the modulus after a step of Landen's, which is q².
 #[inline(always)]
-fn nome(modulus: f64, complement: f64) -> f64 {
-    let series = |e: f64| {
-        let e4 = (e * e) * (e * e);
-        let terms = [
-            1.0,
-            2.0,
-            15.0,
-            150.0,
-            1707.0,
-            20910.0,
-            268_616.0,
-            3_567_400.0,
-            48_555_069.0,
-        ];
-        e * terms.iter().rev().fold(0.0, |sum, term| sum * e4 + term)
-    };
+fn nome<S: Simd>(modulus: Pack<S, 1>, complement: Pack<S, 1>) -> Pack<S, 1> {
     // ½(1 − √k′)/(1 + √k′) without the difference.
-    let epsilon = |modulus: f64, complement: f64, root: f64| {
-        0.5 * modulus / ((1.0 + complement) * ((1.0 + root) * (1.0 + root)))
-    };
+    #[inline(always)]
+    fn epsilon<S: Simd>(m: Pack<S, 1>, k: Pack<S, 1>, root: Pack<S, 1>) -> Pack<S, 1> {
+        0.5 * m / ((1.0 + k) * ((1.0 + root) * (1.0 + root)))
+    }
     let k = complement.sqrt();
     let root = k.sqrt();
-    let e = epsilon(modulus, k, root);
-    if e <= SERIES {
-        return series(e);
+    let mut e = epsilon(modulus, k, root);
+    let small = e.le(SERIES);
+    let stepped = !small.all();
+    if stepped {
+        let part = modulus / ((1.0 + k) * (1.0 + k));
+        let k = 2.0 * root / (1.0 + k);
+        e = small.select(e, epsilon(part * part, k, k.sqrt()));
     }
-    let part = modulus / ((1.0 + k) * (1.0 + k));
-    let k = 2.0 * root / (1.0 + k);
-    series(epsilon(part * part, k, k.sqrt())).sqrt()
+    let e4 = (e * e) * (e * e);
+    let mut sum = Pack::splat(e.simd(), NOME[8]);
+    for n in (0..8).rev() {
+        sum = sum * e4 + NOME[n];
+    }
+    let q = e * sum;
+    if stepped {
+        small.select(q, q.sqrt())
+    } else {
+        q
+    }
 }
 
 /// R_F of three numbers in order, of two sets side by side: B. C. Carlson, *Numer. Algorithms* **10**, 13 (1995); his series in the differences from
 /// the mean, here to the eleventh order, is DLMF 19.19.7. The incomplete integral F(φ) is sin φ R_F(cos²φ, 1 − k²sin²φ, 1).
 #[inline(always)]
-fn carlson(mut x: Two, mut y: Two, mut z: Two) -> Two {
+fn carlson<S: Simd>(mut x: Pack<S, 2>, mut y: Pack<S, 2>, mut z: Pack<S, 2>) -> Pack<S, 2> {
     let mean = loop {
         let mean = (x + y + z) * (1.0 / 3.0);
-        if (z - x).le(0.1 * mean).all() {
+        let [one, other] = both((z - x) - 0.1 * mean);
+        // Both sets of a lane go on together, but no lane with others.
+        let wide = !(one.le(0.0) & other.le(0.0));
+        if !wide.any() {
             break mean;
         }
+        let wide = wide.repeat();
         let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
         let sum = a * b + b * c + c * a;
-        (x, y, z) = (0.25 * (x + sum), 0.25 * (y + sum), 0.25 * (z + sum));
+        x = wide.select(0.25 * (x + sum), x);
+        y = wide.select(0.25 * (y + sum), y);
+        z = wide.select(0.25 * (z + sum), z);
     };
     let (x, y) = (1.0 - x / mean, 1.0 - y / mean);
     let z = -x - y;
@@ -115,44 +134,49 @@ fn carlson(mut x: Two, mut y: Two, mut z: Two) -> Two {
     (1.0 + (none + e3 * (first + e3 * (second + e3 * third)))) / mean.sqrt()
 }
 
-/// Two numbers side by side.
-type Two = Pack<Scalar, 2>;
-
+/// Two vectors side by side.
 #[inline(always)]
-fn two(one: f64, other: f64) -> Two {
-    let mut pair = Pack::splat(Scalar::new(), one);
-    pair.as_mut_slice()[1] = other;
+fn two<S: Simd>(one: Pack<S, 1>, other: Pack<S, 1>) -> Pack<S, 2> {
+    let mut pair = one.repeat();
+    pair.set_part(1, &other);
     pair
 }
 
 #[inline(always)]
-fn both(pair: Two) -> [f64; 2] {
-    let both = pair.as_slice();
-    [both[0], both[1]]
+fn both<S: Simd>(pair: Pack<S, 2>) -> [Pack<S, 1>; 2] {
+    [pair.part(0), pair.part(1)]
 }
 
-impl Elliptic {
-    /// The rotation from this attitude and this ω ≠ 0, where it can be computed so.
+/// A number that is not negative with the sign of another.
+#[inline(always)]
+fn signed<S: Simd>(x: Pack<S, 1>, like: Pack<S, 1>) -> Pack<S, 1> {
+    like.bit(63).select(-x, x)
+}
+
+impl<S: Simd> Elliptic<S> {
+    /// The rotation from this attitude and this ω, and the lanes in which it can be computed so.
     #[inline(always)]
-    pub fn new(top: &Top, attitude: Quaternion, spin: Vector) -> Option<Self> {
-        let w = spin.parts();
+    pub fn new(top: &Top, attitude: Quaternions<S>, spin: Vectors<S, 1>) -> (Self, Mask<S, 1>) {
+        let simd = spin.x.simd();
+        let (zero, unit) = (Pack::splat(simd, 0.0), Pack::splat(simd, 1.0));
+        let w = [spin.x, spin.y, spin.z];
         let moments = top.moments();
-        let [low, middle, high] = top.order();
+        let order = top.order();
+        let [low, middle, high] = order;
         let [a, b, c] = [moments[low], moments[middle], moments[high]];
         // Λ² − 2EJ₂.
-        let above = c * (c - b) * w[high] * w[high] - a * (b - a) * w[low] * w[low];
-        let order = if above > 0.0 {
-            [low, middle, high]
-        } else {
-            [high, middle, low]
-        };
-        let hand = if (order[0] + 1) % 3 == order[1] {
-            1.0
-        } else {
-            -1.0
-        };
-        let [j1, j2, j3] = [moments[order[0]], moments[order[1]], moments[order[2]]];
-        let [w1, w2, w3] = [w[order[0]], w[order[1]], hand * w[order[2]]];
+        let beyond = c * (c - b) * w[high] * w[high] - a * (b - a) * w[low] * w[low];
+        let above = zero.lt(beyond);
+        let hand = if (low + 1) % 3 == middle { 1.0 } else { -1.0 };
+        let hand = above.select(Pack::splat(simd, hand), -hand);
+        let [j1, j2, j3] = [
+            above.select(Pack::splat(simd, a), c),
+            Pack::splat(simd, b),
+            above.select(Pack::splat(simd, c), a),
+        ];
+        let w1 = above.select(w[low], w[high]);
+        let w2 = w[middle];
+        let w3 = hand * above.select(w[high], w[low]);
         let momentum = (j1 * j1 * w1 * w1 + j2 * j2 * w2 * w2 + j3 * j3 * w3 * w3).sqrt();
         // Λ² − 2EJ₃ and Λ² − 2EJ₁.
         let across = [j1 * (j1 - j3), j2 * (j2 - j3)];
@@ -160,19 +184,14 @@ impl Elliptic {
         let d1 = j2 * (j2 - j1) * w2 * w2 + j3 * (j3 - j1) * w3 * w3;
         let size1 = (d3 / across[0]).sqrt();
         let size2 = -(d3 / across[1]).sqrt();
-        let size3 = (d1 / (j3 * (j3 - j1))).sqrt().copysign(w3);
+        let size3 = signed((d1 / (j3 * (j3 - j1))).sqrt(), w3);
         let (sine, cosine) = (j3 * size3.abs() / momentum, j1 * size1 / momentum);
         let whole = d1 * (j3 - j2);
         let modulus = d3 * (j1 - j2) / whole;
-        let complement = above * (j3 - j1) / whole;
-        // Also where there is no number.
-        if !(modulus > LEAST && complement > 0.0) {
-            return None;
-        }
+        let complement = beyond * (j3 - j1) / whole;
         let nome = nome(modulus, complement);
-        if nome > LARGEST {
-            return None;
-        }
+        // Not where there is no number.
+        let serves = Pack::splat(simd, LEAST).lt(modulus) & zero.lt(complement) & nome.le(LARGEST);
         // ϑ₃ = 1 + 2q + 2q⁴ + ..., whose square is 2K/π.
         let square = nome * nome;
         let (fourth, fifth) = (square * square, square * square * nome);
@@ -185,72 +204,70 @@ impl Elliptic {
         // F of the angle from axis 1 to ω, which has up to 2K, and K′ − F′ of the angle of **Λ**, without the difference.
         let (x, y) = (w1 / size1, w2 / size2);
         let level = modulus * sine * sine;
+        let [xx, yy] = [x * x, x * x + complement * y * y];
+        let whole = cosine * cosine + level;
         let integrals = carlson(
-            two(x * x, level),
-            two(x * x + complement * y * y, modulus),
-            two(1.0, cosine * cosine + level),
+            two(serves.select(xx, 1.0), serves.select(level, 1.0)),
+            two(serves.select(yy, 1.0), serves.select(modulus, 1.0)),
+            two(unit, serves.select(whole, 1.0)),
         );
         let [angle, left] = both(integrals);
         let quarter = to_nu * (y * angle);
-        let phase = if x < 0.0 {
-            PI.copysign(y) - quarter
-        } else {
-            quarter
-        };
-        let eta = (to_nu * (cosine * left)).copysign(size3);
+        let phase = x.lt(0.0).select(signed(unit * PI, y) - quarter, quarter);
+        let eta = signed(to_nu * (cosine * left), size3);
 
         // The hyperbolic sine and cosine of η and of 2η; by them nothing cancels where η is small.
-        let grown = exp_m1_in_lanes(one(eta.abs())).as_slice()[0];
+        let grown = exp_m1_in_lanes(eta.abs());
         let shrunk = grown / (1.0 + grown);
         let (sinh, cosh) = (
-            (0.5 * (grown + shrunk)).copysign(eta),
+            signed(0.5 * (grown + shrunk), eta),
             1.0 + 0.5 * grown * shrunk,
         );
         let (double_sinh, double_cosh) = (2.0 * sinh * cosh, 1.0 + 2.0 * sinh * sinh);
-        // Those of an argument that is 2η more.
-        let next = |(s, c): (f64, f64)| {
-            (
-                s * double_cosh + c * double_sinh,
-                c * double_cosh + s * double_sinh,
-            )
-        };
         // q to the powers n² and n(n + 1).
-        let (mut squared, mut product) = (1.0, 1.0);
-        let mut squares = [1.0; TERMS];
-        let (mut sines, mut cosines) = ([[0.0; 2]; TERMS], [[0.0; 2]; TERMS]);
-        let (mut power, mut s, mut c, mut sign) = (1.0, sinh, cosh, 1.0);
+        let (mut squared, mut product) = (unit, unit);
+        let mut squares = [unit; TERMS];
+        let (mut sines, mut cosines) = ([two(zero, zero); TERMS], [two(zero, zero); TERMS]);
+        let (mut power, mut s, mut c, mut sign) = (unit, sinh, cosh, 1.0);
         // ϑ₂, ϑ₃ and ϑ₄ of 0.
-        let (mut second, mut third, mut fourth) = (1.0, 1.0, 1.0);
+        let (mut second, mut third, mut fourth) = (unit, unit, unit);
         // ϑ₂(iη) and its derivative by η, of which no term is negative but by the sign of η.
-        let (mut value, mut slope) = (0.0, 0.0);
-        let mut odd = 1.0;
-        let mut terms = 0;
+        let (mut value, mut slope) = (zero, zero);
+        let (mut odd, mut terms) = (1.0, 0);
         for n in 0..TERMS {
             if n > 0 {
                 // n² − n(n − 1) = n, and n(n + 1) − n² = n.
-                power *= nome;
+                power = power * nome;
                 squared = product * power;
                 product = squared * power;
                 squares[n] = 2.0 * squared;
                 sign = -sign;
-                third += squares[n];
-                fourth += sign * squares[n];
-                second += product;
-                (s, c) = next((s, c));
+                third = third + squares[n];
+                fourth = fourth + sign * squares[n];
+                second = second + product;
+                // Those of an argument that is 2η more.
+                (s, c) = (
+                    s * double_cosh + c * double_sinh,
+                    c * double_cosh + s * double_sinh,
+                );
             }
-            if squared < SMALL && product * c < SMALL * cosh {
+            let enough = squared.lt(SMALL) & (product * c).lt(SMALL * cosh);
+            if enough.all() {
                 break;
             }
+            // No lane has more terms because others have.
+            product = enough.select(0.0, product);
             let alternating = sign * product;
-            sines[n] = [alternating, alternating * c];
-            cosines[n] = [product, -alternating * s];
-            value += product * c;
-            slope += odd * (product * s);
+            sines[n] = two(alternating, alternating * c);
+            cosines[n] = two(product, -alternating * s);
+            value = value + product * c;
+            slope = slope + odd * (product * s);
             odd += 2.0;
             terms = n + 1;
         }
         let mut found = Self {
             order,
+            above,
             hand,
             moments: [j1, j2, j3],
             first: [w1, w2, w3],
@@ -268,20 +285,21 @@ impl Elliptic {
             squares,
             sines,
             cosines,
-            start: Quaternion::IDENTITY,
+            start: [unit, zero, zero, zero],
         };
-        let v = [attitude.x, attitude.y, attitude.z];
-        let [x, y, z] = [v[order[0]], v[order[1]], v[order[2]]];
-        let (sine, cosine) = sincos(phase);
+        let v = [attitude.v.x, attitude.v.y, attitude.v.z];
+        let (x, z) = (above.select(v[low], v[high]), above.select(v[high], v[low]));
+        let (sine, cosine) = sincos_in_lanes(phase);
         let (_, argument) = found.thetas(sine, cosine);
-        let turned = found.frame([w1, w2, w3], argument, (0.0, 1.0), 0.0);
-        found.start = Quaternion::new(attitude.w, x, y, hand * z) * turned.inverse();
-        Some(found)
+        let [rw, rx, ry, rz] = found.frame([w1, w2, w3], argument, (zero, unit), zero);
+        found.start =
+            quaternion::product([attitude.w, x, v[middle], hand * z], [rw, -rx, -ry, -rz]);
+        (found, serves)
     }
 
     /// Attitude and ω at a time.
     #[inline(always)]
-    pub fn at(&self, time: f64) -> (Quaternion, Vector) {
+    pub fn at(&self, time: Pack<S, 1>) -> (Quaternions<S>, Vectors<S, 1>) {
         let (sines, cosines) =
             sincos_in_lanes(two(self.rate * time + self.phase, self.turn * time));
         let [[sine, turn_sine], [cosine, turn_cosine]] = [both(sines), both(cosines)];
@@ -289,35 +307,51 @@ impl Elliptic {
         let [one, two, three] = self.sizes;
         let w = [one * theta[0], two * theta[1], three * theta[2]];
         let (spin, more) = self.spin(w);
-        let turned = self.frame(w, argument, (turn_sine, turn_cosine), more);
-        let Quaternion { w, x, y, z } = self.start.turned(turned);
+        let turn = self.frame(w, argument, (turn_sine, turn_cosine), more);
+        let [w, x, y, z] = turned(self.start, turn);
         let v = self.of_body([x, y, z]);
-        (Quaternion::new(w, v.x, v.y, v.z), self.of_body(spin))
+        (Quaternions { w, v }, self.of_body(spin))
     }
 
     /// A vector along axes 1, 2 and 3 in those of the body.
     #[inline(always)]
-    fn of_body(&self, parts: [f64; 3]) -> Vector {
-        let mut v = [0.0; 3];
-        v[self.order[0]] = parts[0];
-        v[self.order[1]] = parts[1];
-        v[self.order[2]] = self.hand * parts[2];
-        Vector::new(v[0], v[1], v[2])
+    fn of_body(&self, [x, y, z]: [Pack<S, 1>; 3]) -> Vectors<S, 1> {
+        let z = self.hand * z;
+        let parts = [self.above.select(x, z), y, self.above.select(z, x)];
+        Vectors {
+            x: self.along(0, parts),
+            y: self.along(1, parts),
+            z: self.along(2, parts),
+        }
+    }
+
+    /// That part along an axis of the body of those from the least moment to the largest; stores by index would have to end before loads of two numbers at once.
+    #[inline(always)]
+    fn along(&self, axis: usize, [least, middle, most]: [Pack<S, 1>; 3]) -> Pack<S, 1> {
+        let [low, between, _] = self.order;
+        if axis == low {
+            least
+        } else if axis == between {
+            middle
+        } else {
+            most
+        }
     }
 
     /// ϑ₂, ϑ₁ and ϑ₃ of ν, and the real and the imaginary part of ϑ₁(ν − iη), each but for a factor, from the sine and the cosine of ν.
     #[inline(always)]
-    fn thetas(&self, sine: f64, cosine: f64) -> ([f64; 3], [f64; 2]) {
+    fn thetas(&self, sine: Pack<S, 1>, cosine: Pack<S, 1>) -> ([Pack<S, 1>; 3], [Pack<S, 1>; 2]) {
         let (s2, c2) = (2.0 * sine * cosine, 1.0 - 2.0 * sine * sine);
+        let zero = Pack::splat(sine.simd(), 0.0);
         // The sine and the cosine of (2n + 1)ν, and the cosine of 2nν.
         let (mut s, mut c) = (sine, cosine);
-        let (mut even, mut before) = (1.0, c2);
-        let mut third = 0.0;
-        let (mut odd, mut level) = (two(0.0, 0.0), two(0.0, 0.0));
+        let (mut even, mut before) = (zero + 1.0, c2);
+        let mut third = zero;
+        let (mut odd, mut level) = (two(zero, zero), two(zero, zero));
         for n in 0..self.terms {
-            odd = odd + two(self.sines[n][0], self.sines[n][1]) * s;
-            level = level + two(self.cosines[n][0], self.cosines[n][1]) * c;
-            third += self.squares[n] * even;
+            odd = odd + self.sines[n] * s.repeat();
+            level = level + self.cosines[n] * c.repeat();
+            third = third + self.squares[n] * even;
             (s, c) = (s * c2 + c * s2, c * c2 - s * s2);
             (even, before) = (2.0 * c2 * even - before, even);
         }
@@ -329,7 +363,7 @@ impl Elliptic {
     /// flights: Λ² − 2EJ₃, in which all terms have one sign, by the factor, and then the energy by ω₃, which is never 0 and becomes larger by the
     /// part that is returned, too.
     #[inline(always)]
-    fn spin(&self, w: [f64; 3]) -> ([f64; 3], f64) {
+    fn spin(&self, w: [Pack<S, 1>; 3]) -> ([Pack<S, 1>; 3], Pack<S, 1>) {
         let [a, b] = self.across;
         let part = (self.beyond / (a * w[0] * w[0] + b * w[1] * w[1])).sqrt();
         let [x, y, z] = [part * w[0], part * w[1], part * w[2]];
@@ -343,11 +377,11 @@ impl Elliptic {
     #[inline(always)]
     fn frame(
         &self,
-        w: [f64; 3],
-        [real, imaginary]: [f64; 2],
-        turn: (f64, f64),
-        more: f64,
-    ) -> Quaternion {
+        w: [Pack<S, 1>; 3],
+        [real, imaginary]: [Pack<S, 1>; 2],
+        turn: (Pack<S, 1>, Pack<S, 1>),
+        more: Pack<S, 1>,
+    ) -> [Pack<S, 1>; 4] {
         let [a, b, c] = self.moments;
         let [x, y, z] = [a * w[0], b * w[1], c * w[2]];
         let square = x * x + y * y;
@@ -371,18 +405,18 @@ impl Elliptic {
         let minus_cosine = about_cosine * plus_cosine + about_sine * plus_sine;
         // By ψ about the third axis, back by the tilt about the second and back by the angle about the third.
         let (sine, cosine) = turn;
-        Quaternion::new(
+        [
             tilt_cosine * (cosine * plus_cosine + sine * plus_sine),
             tilt_sine * (sine * minus_cosine + cosine * minus_sine),
             -tilt_sine * (cosine * minus_cosine - sine * minus_sine),
             tilt_cosine * (sine * plus_cosine - cosine * plus_sine),
-        )
+        ]
     }
 }
 
 /// Sines and cosines of half the angles of two vectors (x, y) of these lengths.
 #[inline(always)]
-fn half(y: Two, x: Two, length: Two) -> (Two, Two) {
+fn half<S: Simd>(y: Pack<S, 2>, x: Pack<S, 2>, length: Pack<S, 2>) -> (Pack<S, 2>, Pack<S, 2>) {
     // The sum of the vector, or of the one that x < 0 mirrors, and one of this length along x.
     let sum = length + x.abs();
     let part = 1.0 / (2.0 * length * sum).sqrt();

@@ -10,6 +10,7 @@ mod turn;
 
 pub use bounds::SpinBounds;
 pub use rotation::Rotation;
+pub(crate) use rotation::Rotations;
 pub use symmetric::State;
 pub(crate) use symmetric::{
     Attitude, Flight, PlanarFlight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion,

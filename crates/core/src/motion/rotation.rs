@@ -7,9 +7,12 @@
 use super::elliptic::Elliptic;
 use super::series::Series;
 use super::top::energy_error;
-use crate::math::{Quaternion, Vector, sum};
+use crate::math::quaternion::turned;
+use crate::math::{Quaternion, Quaternions, UNITS, Vector, Vectors, sum};
 use crate::shape::{Symmetry, Top};
-use crate::simd::elementary::sincos;
+use crate::simd::elementary::sincos_in_lanes;
+use crate::simd::{Level, Mask, Pack, one};
+use pulp::{Scalar, Simd, WithSimd};
 
 /// The rotation of a body in flight; where it takes series, fastest forward in time.
 #[derive(Debug, Clone)]
@@ -18,57 +21,40 @@ pub struct Rotation {
     /// The attitude, and ω in the axes of the body, at the beginning.
     attitude: Quaternion,
     spin: Vector,
-    way: Way,
+    closed: Rotations<Scalar>,
+    /// What serves instead. Rare, and four times as large as all else, so that it is not moved about with the others.
+    series: Option<Box<Series>>,
+}
+
+/// The rotation of the same body in each lane, from its attitude and its ω at the beginning.
+#[derive(Debug, Clone)]
+pub(crate) struct Rotations<S: Simd> {
+    attitude: Quaternions<S>,
+    spin: Vectors<S, 1>,
+    way: Way<S>,
 }
 
 #[derive(Debug, Clone)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "one lives at a time, on the stack"
-)]
-enum Way {
+enum Way<S: Simd> {
     /// About ω: its half, and the direction.
-    Steady(f64, Vector),
+    Steady(Pack<S, 1>, Vectors<S, 1>),
     /// Half the rate and the direction of **Λ**/J, then λ about an axis.
-    Precession((f64, Vector), f64, usize),
-    Elliptic(Elliptic),
-    /// Rare, and four times as large as all else, so that it is not moved about with the others.
-    Series(Box<Series>),
+    Precession((Pack<S, 1>, Vectors<S, 1>), Pack<S, 1>, usize),
+    /// But where the body does not turn.
+    Elliptic(Elliptic<S>, Mask<S, 1>),
 }
 
 impl Rotation {
     /// The rotation with this attitude and this ω, in the axes of the body, at the time 0.
     #[inline(always)]
     pub fn new(top: Top, attitude: Quaternion, spin: Vector) -> Self {
-        let rests = spin == Vector::default();
-        let way = match top.symmetry() {
-            Symmetry::Asymmetric if !rests => match Elliptic::new(&top, attitude, spin) {
-                Some(elliptic) => Way::Elliptic(elliptic),
-                None => Way::Series(Box::new(Series::new(&top, attitude, spin))),
-            },
-            Symmetry::About(axis) if !rests => {
-                let moments = top.moments();
-                let across = moments[(axis + 1) % 3];
-                let spin = spin.parts();
-                let [a, b, c] = moments;
-                let [x, y, z] = [
-                    a / across * spin[0],
-                    b / across * spin[1],
-                    c / across * spin[2],
-                ];
-                let own = (1.0 - moments[axis] / across) * spin[axis];
-                Way::Precession(half_and_direction(Vector::new(x, y, z)), own, axis)
-            }
-            _ => {
-                let (half, direction) = half_and_direction(spin);
-                Way::Steady(half, direction)
-            }
-        };
+        let (closed, serves) = Rotations::new(&top, attitude.in_lane(), spin.in_lane());
         Self {
             top,
             attitude,
             spin,
-            way,
+            closed,
+            series: (!serves.all()).then(|| Box::new(Series::new(&top, attitude, spin))),
         }
     }
 
@@ -79,50 +65,27 @@ impl Rotation {
         if time == 0.0 {
             return (self.attitude, self.spin);
         }
-        match &mut self.way {
-            Way::Steady(half, direction) => {
-                let turn = about(*direction, *half * time);
-                (self.attitude.turned(turn), self.spin)
-            }
-            Way::Precession((half, direction), own, axis) => {
-                let precessed = self.attitude * about(*direction, *half * time);
-                let (sine, cosine) = sincos(0.5 * *own * time);
-                let axis = *axis;
-                let mut along = [0.0; 3];
-                along[axis] = sine;
-                let [x, y, z] = along;
-                let turn = Quaternion::new(cosine, x, y, z);
-                (precessed.turned(turn), self.back(axis, sine, cosine))
-            }
-            Way::Elliptic(elliptic) => elliptic.at(time),
-            Way::Series(series) => {
-                if time < series.start() {
-                    **series = Series::new(&self.top, self.attitude, self.spin);
-                }
-                let (attitude, spin) = series.at(&self.top, time);
-                let lost = energy_error(self.top.moments(), self.spin.parts(), spin.parts());
-                let part = 0.5 * lost / self.top.twice_energy(spin);
-                (attitude, spin + spin * part)
-            }
+        let Some(series) = &mut self.series else {
+            let (attitude, spin) = self.closed.at(one(time));
+            return (attitude.lane(0), spin.lane(0));
+        };
+        if time < series.start() {
+            **series = Series::new(&self.top, self.attitude, self.spin);
         }
+        let (attitude, spin) = series.at(&self.top, time);
+        let lost = energy_error(self.top.moments(), self.spin.parts(), spin.parts());
+        let part = 0.5 * lost / self.top.twice_energy(spin);
+        (attitude, spin + spin * part)
     }
 
-    /// ω at the beginning turned back about the axis of symmetry, by the sine and the cosine of half the angle, with the length that it had.
-    #[inline(always)]
-    fn back(&self, axis: usize, sine: f64, cosine: f64) -> Vector {
-        let mut spin = self.spin.parts();
-        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        let [a, b] = [spin[i], spin[j]];
-        let (less, across) = (-2.0 * sine * sine, 2.0 * sine * cosine);
-        // As in [`Quaternion::turned`].
-        let (x, dx) = sum(a, less * a + across * b);
-        let (y, dy) = sum(b, less * b - across * a);
-        // Squares, and what they lose by rounding.
-        let [(aa, da), (bb, db), (xx, ex), (yy, ey)] = [square(a), square(b), square(x), square(y)];
-        let lost = ((aa - xx) + (bb - yy)) + ((da - ex) + (db - ey)) - 2.0 * (x * dx + y * dy);
-        let part = 0.5 * lost / (xx + yy).max(f64::MIN_POSITIVE);
-        (spin[i], spin[j]) = (x + (dx + part * x), y + (dy + part * y));
-        Vector::new(spin[0], spin[1], spin[2])
+    /// [`Rotation::new`], compiled separately for whom it would take more time to compile it in many places than to call it.
+    pub(crate) fn begun(top: &Top, attitude: Quaternion, spin: Vector) -> Self {
+        Level::run_scalar(Begun(top, attitude, spin))
+    }
+
+    /// [`Rotation::at`], compiled so, too.
+    pub(crate) fn later(&mut self, time: f64) -> (Quaternion, Vector) {
+        Level::run_scalar(Later(self, time))
     }
 
     /// The attitude at a time.
@@ -136,42 +99,167 @@ impl Rotation {
     }
 }
 
+struct Begun<'a>(&'a Top, Quaternion, Vector);
+struct Later<'a>(&'a mut Rotation, f64);
+
+impl WithSimd for Begun<'_> {
+    type Output = Rotation;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Rotation {
+        Rotation::new(*self.0, self.1, self.2)
+    }
+}
+
+impl WithSimd for Later<'_> {
+    type Output = (Quaternion, Vector);
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        self.0.at(self.1)
+    }
+}
+
+impl<S: Simd> Rotations<S> {
+    /// Those of bodies that do not turn.
+    pub fn none(simd: S) -> Self {
+        let none = Vectors::splat(simd, Vector::default());
+        Self {
+            attitude: Quaternions::splat(simd, Quaternion::IDENTITY),
+            spin: none,
+            way: Way::Steady(none.x, none),
+        }
+    }
+
+    /// The rotations with these attitudes and these ω, and the lanes in which they are known for all times.
+    #[inline(always)]
+    pub fn new(top: &Top, attitude: Quaternions<S>, spin: Vectors<S, 1>) -> (Self, Mask<S, 1>) {
+        let rests = spin.dot(spin).eq(0.0);
+        let mut serves = Mask::splat(rests.simd(), true);
+        let way = match top.symmetry() {
+            Symmetry::Asymmetric if !rests.all() => {
+                // What does not turn has no such functions.
+                let [low, ..] = top.order();
+                let turning = spin.or(rests, Vectors::splat(rests.simd(), ANY + UNITS[low]));
+                let elliptic;
+                (elliptic, serves) = Elliptic::new(top, attitude, turning);
+                Way::Elliptic(elliptic, rests)
+            }
+            Symmetry::About(axis) if !rests.all() => {
+                let moments = top.moments();
+                let across = moments[(axis + 1) % 3];
+                let [a, b, c] = moments;
+                let momentum = Vectors {
+                    x: a / across * spin.x,
+                    y: b / across * spin.y,
+                    z: c / across * spin.z,
+                };
+                let own = (1.0 - moments[axis] / across) * spin.parts()[axis];
+                Way::Precession(half_and_direction(momentum), own, axis)
+            }
+            _ => {
+                let (half, direction) = half_and_direction(spin);
+                Way::Steady(half, direction)
+            }
+        };
+        let rotations = Self {
+            attitude,
+            spin,
+            way,
+        };
+        (rotations, serves)
+    }
+
+    /// The attitudes, and ω in the axes of the body, at a time.
+    #[inline(always)]
+    pub fn at(&self, time: Pack<S, 1>) -> (Quaternions<S>, Vectors<S, 1>) {
+        match &self.way {
+            Way::Steady(half, direction) => {
+                let turn = about(*direction, *half * time);
+                (self.turned(self.attitude, turn), self.spin)
+            }
+            Way::Precession((half, direction), own, axis) => {
+                let precessed = self.attitude.times(about(*direction, *half * time));
+                let (sine, cosine) = sincos_in_lanes(0.5 * *own * time);
+                let along = Vectors::splat(time.simd(), UNITS[*axis]);
+                let turn = Quaternions {
+                    w: cosine,
+                    v: along.times(sine),
+                };
+                let spin = self.back(*axis, sine, cosine);
+                (self.turned(precessed, turn), spin)
+            }
+            Way::Elliptic(elliptic, rests) => {
+                let (attitude, spin) = elliptic.at(time);
+                if !rests.any() {
+                    return (attitude, spin);
+                }
+                let still = Quaternions::splat(time.simd(), Quaternion::IDENTITY);
+                let attitude = attitude.or(*rests, self.turned(self.attitude, still));
+                (attitude, spin.or(*rests, self.spin))
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn turned(&self, attitude: Quaternions<S>, turn: Quaternions<S>) -> Quaternions<S> {
+        Quaternions::of(turned(attitude.parts(), turn.parts()))
+    }
+
+    /// ω at the beginning turned back about the axis of symmetry, by the sine and the cosine of half the angle, with the length that it had.
+    #[inline(always)]
+    fn back(&self, axis: usize, sine: Pack<S, 1>, cosine: Pack<S, 1>) -> Vectors<S, 1> {
+        let mut spin = self.spin.parts();
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let [a, b] = [spin[i], spin[j]];
+        let (less, across) = (-2.0 * sine * sine, 2.0 * sine * cosine);
+        // As in [`turned`].
+        let (x, dx) = sum(a, less * a + across * b);
+        let (y, dy) = sum(b, less * b - across * a);
+        // Squares, and what they lose by rounding.
+        let [(aa, da), (bb, db), (xx, ex), (yy, ey)] = [square(a), square(b), square(x), square(y)];
+        let lost = ((aa - xx) + (bb - yy)) + ((da - ex) + (db - ey)) - 2.0 * (x * dx + y * dy);
+        let part = 0.5 * lost / (xx + yy).max(f64::MIN_POSITIVE);
+        (spin[i], spin[j]) = (x + (dx + part * x), y + (dy + part * y));
+        let [x, y, z] = spin;
+        Vectors { x, y, z }
+    }
+}
+
 impl Top {
     /// The attitude of the principal axes, and ω in the axes of space, of a free body after a time; both are given at its beginning.
     #[inline(always)]
     pub fn turned(&self, attitude: Quaternion, spin: Vector, time: f64) -> (Quaternion, Vector) {
         let spin = attitude.inverse().rotate(spin);
-        let (attitude, spin) = Rotation::new(*self, attitude, spin).at(time);
+        let (attitude, spin) = Rotation::begun(self, attitude, spin).later(time);
         (attitude, attitude.rotate(spin))
     }
 }
 
+/// With as much again or more along an axis, an ω for which [`Elliptic`] functions serve.
+const ANY: Vector = Vector::new(0.1, 0.1, 0.1);
+
 /// A square, and what it has lost by rounding.
 #[inline(always)]
-fn square(v: f64) -> (f64, f64) {
+fn square<S: Simd>(v: Pack<S, 1>) -> (Pack<S, 1>, Pack<S, 1>) {
     let square = v * v;
     (square, v.mul_add(v, -square))
 }
 
 /// Half the length of a vector, and its direction; none of no vector.
 #[inline(always)]
-fn half_and_direction(v: Vector) -> (f64, Vector) {
+fn half_and_direction<S: Simd>(v: Vectors<S, 1>) -> (Pack<S, 1>, Vectors<S, 1>) {
     let length = (v.x * v.x + v.y * v.y + v.z * v.z).sqrt();
-    if length > 0.0 {
-        (0.5 * length, v / length)
-    } else {
-        (0.0, v)
-    }
+    let divisor = length.le(0.0).select(1.0, length);
+    (0.5 * length, v.over(divisor))
 }
 
 /// The rotation about a direction by twice this angle.
 #[inline(always)]
-fn about(direction: Vector, half: f64) -> Quaternion {
-    let (sine, cosine) = sincos(half);
-    Quaternion::new(
-        cosine,
-        sine * direction.x,
-        sine * direction.y,
-        sine * direction.z,
-    )
+fn about<S: Simd>(direction: Vectors<S, 1>, half: Pack<S, 1>) -> Quaternions<S> {
+    let (sine, cosine) = sincos_in_lanes(half);
+    Quaternions {
+        w: cosine,
+        v: direction.times(sine),
+    }
 }

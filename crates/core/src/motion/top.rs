@@ -1,8 +1,11 @@
 //! Euler's equations of a free body.
 
 use super::bounds::{SpinBounds, largest_spin};
-use crate::math::{Quaternion, Vector};
+use crate::math::quaternion::Part;
+use crate::math::{Quaternion, Vector, Vectors};
 use crate::shape::Top;
+use crate::simd::Pack;
+use pulp::Simd;
 
 impl Top {
     /// The angular momentum in the axes of space, from ω in those of the body.
@@ -51,6 +54,12 @@ impl Top {
         largest_spin(self.moments(), spin.parts())
     }
 
+    /// [`SpinBounds::whole`] in each lane.
+    #[inline(always)]
+    pub(crate) fn largest_acceleration<S: Simd>(&self, spin: Vectors<S, 1>) -> Pack<S, 1> {
+        largest_spin(self.moments(), spin.parts()) * (1.0 + self.asymmetry / 3.0_f64.sqrt())
+    }
+
     /// Bounds on the rotation in a flight.
     #[inline(always)]
     pub fn bounds(&self, spin: Vector) -> SpinBounds {
@@ -60,7 +69,7 @@ impl Top {
 
 /// Twice the energy by which a later ω is short of an earlier one, to rounding of the small difference.
 #[inline(always)]
-pub(super) fn energy_error(moments: [f64; 3], before: [f64; 3], later: [f64; 3]) -> f64 {
+pub(super) fn energy_error<T: Part>(moments: [T; 3], before: [T; 3], later: [T; 3]) -> T {
     let part = |i: usize| moments[i] * ((before[i] - later[i]) * (before[i] + later[i]));
     part(0) + part(1) + part(2)
 }

@@ -76,7 +76,7 @@ impl Turn {
         let Some(axis) = axis else {
             let bounds = top.bounds(spin);
             return Self {
-                way: TurnWay::Any(Rotation::new(*top, attitude, spin)),
+                way: TurnWay::Any(Rotation::begun(top, attitude, spin)),
                 bounds: [bounds.fastest, bounds.whole],
                 about: None,
             };
@@ -121,7 +121,7 @@ impl Turn {
                 }
             }
             TurnWay::Any(rotation) => {
-                let (attitude, spin) = rotation.at(time);
+                let (attitude, spin) = rotation.later(time);
                 BodyPose::new(attitude, spin)
             }
         }
@@ -132,7 +132,7 @@ impl Turn {
     pub fn rotated(&mut self, time: f64) -> Option<(Quaternion, Vector)> {
         match &mut self.way {
             TurnWay::Axis(..) => None,
-            TurnWay::Any(rotation) => Some(rotation.at(time)),
+            TurnWay::Any(rotation) => Some(rotation.later(time)),
         }
     }
 }

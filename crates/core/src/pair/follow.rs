@@ -1,7 +1,7 @@
 //! Encounters of the same two bodies, one after the other, or in the lanes of vectors where they can be.
 
-use super::axial::{AxialEncounters, AxialPair};
 use super::encounter::{Chance, End, Following, OnHit};
+use super::lanes::{AxialBody, ClumpBody, LanePair};
 use super::partner::{Approach, Partner};
 use crate::contact::Between;
 use crate::law::{Frictionless, Law};
@@ -17,18 +17,24 @@ pub(crate) struct Follower<'a, 'b> {
     bodies: [&'a Partner; 2],
     law: &'a Law<'b>,
     level: Level,
-    axial: Option<AxialPair<'a, 'b>>,
+    axial: Option<LanePair<'a, 'b, AxialBody>>,
+    clumps: Option<LanePair<'a, 'b, ClumpBody>>,
     between: Vec<Between>,
     ends: Vec<Option<End>>,
 }
 
 impl<'a, 'b> Follower<'a, 'b> {
     pub fn new(bodies: [&'a Partner; 2], law: &'a Law<'b>, level: Level) -> Self {
+        let axial = LanePair::new(bodies, law);
         Self {
             bodies,
             law,
             level,
-            axial: AxialPair::new(bodies, law),
+            clumps: axial
+                .is_none()
+                .then(|| LanePair::new(bodies, law))
+                .flatten(),
+            axial,
             between: vec![Between::default(); bodies[0].pieces.len() * bodies[1].pieces.len()],
             ends: Vec::new(),
         }
@@ -37,7 +43,7 @@ impl<'a, 'b> Follower<'a, 'b> {
     /// True for two smooth balls, of which rotation means nothing to the other.
     #[inline(always)]
     pub fn smooth_balls(&self) -> bool {
-        self.axial.as_ref().is_some_and(AxialPair::is_of_spheres)
+        self.axial.as_ref().is_some_and(LanePair::is_of_spheres)
     }
 
     /// The velocities of smooth balls after a contact with this normal; the numbers, with a seed, are those of the encounters, where ε_n scatters.
@@ -74,14 +80,11 @@ impl<'a, 'b> Follower<'a, 'b> {
     ) -> Flatten<Iter<'_, Option<End>>> {
         self.ends.clear();
         self.ends.resize(approaches.len(), None);
+        let own = hit.as_mut().map(|hit| &mut **hit as _);
         if let Some(pair) = &self.axial {
-            self.level.run(AxialEncounters {
-                pair,
-                approaches,
-                chance,
-                hit: hit.as_mut().map(|hit| &mut **hit as _),
-                ends: &mut self.ends,
-            });
+            pair.follow(self.level, approaches, chance, own, &mut self.ends);
+        } else if let Some(pair) = &self.clumps {
+            pair.follow(self.level, approaches, chance, own, &mut self.ends);
         }
         for (number, (approach, end)) in approaches.iter().zip(&mut self.ends).enumerate() {
             if end.is_some() {

@@ -1,8 +1,8 @@
 //! Two bodies in free flight: encounters, followed exactly, in coherent units.
 
-mod axial;
 mod encounter;
 mod follow;
+mod lanes;
 mod lasting;
 mod partner;
 mod run;

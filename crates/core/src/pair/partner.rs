@@ -217,7 +217,8 @@ impl FreeBody {
     #[inline(always)]
     pub fn turn(&mut self, body: &Partner, time: f64) {
         if time != 0.0 {
-            (self.attitude, self.spin) = Rotation::new(body.top, self.attitude, self.spin).at(time);
+            let mut rotation = Rotation::begun(&body.top, self.attitude, self.spin);
+            (self.attitude, self.spin) = rotation.later(time);
         }
     }
 

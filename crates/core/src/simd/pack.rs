@@ -12,14 +12,14 @@ use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 pub(crate) const LANES: usize = 8;
 
 /// K vectors of doubles.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Pack<S: Simd, const K: usize> {
     simd: S,
     vectors: [S::f64s; K],
 }
 
 /// A truth value for each lane of a [`Pack`].
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Mask<S: Simd, const K: usize> {
     simd: S,
     masks: [S::m64s; K],
@@ -45,12 +45,15 @@ impl<S: Simd, const K: usize> Operand<S, K> for f64 {
     }
 }
 
-/// A function of packs, vector by vector: `$result` starts as `$start`, and vector k of it becomes `$value`.
+/// A function of packs, vector by vector: `$result` starts as `$start`, and vector k of it becomes `$value`. Without a range, of which every operation of every
+/// formula would have its iterator compiled.
 macro_rules! each_vector {
     ($result:ident = $start:expr, $k:ident => $value:expr) => {{
         let mut $result = $start;
-        for $k in 0..K {
+        let mut $k = 0;
+        while $k < K {
             $result[$k] = $value;
+            $k += 1;
         }
         $result
     }};
@@ -216,6 +219,17 @@ impl<S: Simd> Pack<S, 1> {
         Pack {
             simd: self.simd,
             vectors: [self.vectors[0]; N],
+        }
+    }
+}
+
+impl<S: Simd> Mask<S, 1> {
+    /// The same truth values N times.
+    #[inline(always)]
+    pub fn repeat<const N: usize>(self) -> Mask<S, N> {
+        Mask {
+            simd: self.simd,
+            masks: [self.masks[0]; N],
         }
     }
 }

@@ -1,0 +1,465 @@
+//! Bodies that are balls on an axis, such as dumbbells, or spheroids.
+//!
+//! The axis **e** of such a body turns about **Λ** at the rate Ω = |Λ|/J, and all that a contact without friction sees of the body is its axis: a unit
+//! impulse along **n** on the ball at x**e**, or on a spheroid where it is as far from the axis as such a ball, changes **Λ**/J by (x/J) **e** × **n**. The spin about
+//! the axis is constant, and is added to the attitude at the end.
+
+use super::{
+    Encountering, LaneBall, LaneBody, LaneContact, LaneEncounters, LaneFlight, LanePair,
+    MOST_LANES, NearestParts, Surfaces,
+};
+use crate::contact::{RoundPart, RoundParts, TurningAxis};
+use crate::math::{Quaternion, Quaternions, UNITS, Vector, Vectors};
+use crate::pair::encounter::End;
+use crate::pair::partner::{FreeBody, Partner};
+use crate::shape::{Piece, PieceKind};
+use crate::simd::elementary::sincos_in_lanes;
+use crate::simd::{Mask, Pack};
+use pulp::Simd;
+
+/// A body of balls on its axis, or of one part on it.
+pub(in crate::pair) struct AxialBody {
+    /// The principal axis of this number.
+    axis: usize,
+    balls: Vec<LaneBall>,
+    part: Option<RoundPart>,
+    /// The reciprocal of the moment of inertia across it, and that about it, over that across.
+    inverse: f64,
+    ratio: f64,
+}
+
+impl AxialBody {
+    /// The two parts of spheroids.
+    #[inline(always)]
+    fn parts<'a>(pair: &'a LanePair<'_, '_, Self>) -> Option<RoundParts<'a>> {
+        if pair.surfaces != Surfaces::Spheroids {
+            return None;
+        }
+        let [one, two] = &pair.shapes;
+        Some(RoundParts {
+            parts: [one.part.as_ref()?, two.part.as_ref()?],
+            reach: pair.reach,
+        })
+    }
+}
+
+impl LaneBody for AxialBody {
+    type Flight<S: Simd> = AxialFlight<S>;
+
+    fn new(body: &Partner) -> Option<Self> {
+        let axis = body.axis?;
+        let ball = |piece: &Piece| match piece.kind {
+            PieceKind::Ball(place, radius) => Some(LaneBall {
+                place: UNITS[2] * place.parts()[axis],
+                distance: place.parts()[axis].abs(),
+                radius,
+            }),
+            _ => None,
+        };
+        let moments = body.top.moments();
+        let inertia = moments[(axis + 1) % 3];
+        let balls: Option<Vec<LaneBall>> = body.pieces.iter().map(ball).collect();
+        // A dumbbell may be two balls in one place.
+        let (first, others) = body.pieces.split_first()?;
+        let alone = others.iter().all(|piece| piece == first);
+        let part = alone.then(|| RoundPart::new(first, axis)).flatten();
+        Some(Self {
+            axis,
+            balls: balls.unwrap_or_default(),
+            part,
+            inverse: 1.0 / inertia,
+            ratio: moments[axis] / inertia,
+        })
+    }
+
+    #[inline(always)]
+    fn balls(&self) -> &[LaneBall] {
+        &self.balls
+    }
+
+    fn surfaces([one, two]: [&Partner; 2], shapes: &[Self; 2]) -> Option<Surfaces> {
+        if one.is_ball() && two.is_ball() {
+            Some(Surfaces::Spheres)
+        } else if shapes.iter().all(|shape| !shape.balls.is_empty()) {
+            Some(Surfaces::Balls)
+        } else if shapes.iter().all(|shape| shape.part.is_some()) {
+            Some(Surfaces::Spheroids)
+        } else {
+            None
+        }
+    }
+}
+
+/// One body in each lane.
+pub(in crate::pair) struct AxialFlight<S: Simd> {
+    /// **e** at its beginning, and **Λ**/J.
+    axis: Vectors<S, 1>,
+    precession: Vectors<S, 1>,
+    /// The rotation of **e** since the encounter was given.
+    turned: Quaternions<S>,
+    /// Of **e** the part along **Λ**, that across, and **Λ** × **e**/|Λ|; Ω, and |**e**″|.
+    motion: [Vectors<S, 1>; 3],
+    rate: Pack<S, 1>,
+    bend: Pack<S, 1>,
+    /// Of a spheroid the largest distance of its points from **Λ**.
+    swing: Pack<S, 1>,
+}
+
+impl<S: Simd> AxialFlight<S> {
+    /// **e** and **e**′ at a time, of which sine and cosine of the angle are given.
+    #[inline(always)]
+    fn at(&self, (sine, cosine): (Pack<S, 1>, Pack<S, 1>)) -> [Vectors<S, 1>; 2] {
+        let [along, second, third] = self.motion;
+        let axis = third.mul_add(sine, second.mul_add(cosine, along));
+        let change = third.times(cosine).minus(second.times(sine));
+        [axis, change.times(self.rate)]
+    }
+
+    /// The same with what turns it.
+    #[inline(always)]
+    fn turning(&self, time: Pack<S, 1>) -> TurningAxis<S> {
+        let [axis, change] = self.at(sincos_in_lanes(self.rate * time));
+        TurningAxis {
+            axis,
+            change,
+            turn: self.precession,
+            rate: self.rate,
+            swing: self.swing,
+        }
+    }
+}
+
+impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
+    type Body = AxialBody;
+    /// The height on the axis.
+    type Place = Pack<S, 1>;
+    /// **e** and **e**′.
+    type Pose = [Vectors<S, 1>; 2];
+    type Ended = EndedRotations<S>;
+    const FEW: u32 = 1;
+
+    #[inline(always)]
+    fn none(simd: S) -> Self {
+        let (zero, still) = (
+            Pack::splat(simd, 0.0),
+            Vectors::splat(simd, Vector::default()),
+        );
+        Self {
+            axis: Vectors::splat(simd, UNITS[2]),
+            precession: still,
+            turned: Quaternions::splat(simd, Quaternion::IDENTITY),
+            motion: [still; 3],
+            rate: zero,
+            bend: zero,
+            swing: zero,
+        }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, lane: usize, line: &AxialBody, state: &FreeBody) {
+        let mut spin = state.spin.parts();
+        spin[line.axis] *= line.ratio;
+        let [x, y, z] = spin;
+        self.axis.put(lane, state.attitude.rotate(UNITS[line.axis]));
+        self.precession
+            .put(lane, state.attitude.rotate(Vector::new(x, y, z)));
+        self.turned.put(lane, Quaternion::IDENTITY);
+    }
+
+    #[inline(always)]
+    fn begin(&mut self, line: &AxialBody, fresh: Mask<S, 1>) -> Mask<S, 1> {
+        let square = self.precession.dot(self.precession);
+        let rate = square.sqrt();
+        let turns = Pack::splat(rate.simd(), 0.0).lt(rate);
+        let about = self
+            .axis
+            .or(turns, self.precession.times(1.0 / turns.select(rate, 1.0)));
+        let third = about.cross(self.axis);
+        let second = third.cross(about);
+        let cosine = about.dot(self.axis);
+        let along = about.times(cosine);
+        let [one, two, three] = self.motion;
+        self.motion = [
+            one.or(fresh, along),
+            two.or(fresh, second),
+            three.or(fresh, third),
+        ];
+        self.rate = fresh.select(rate, self.rate);
+        let sine = third.dot(third).sqrt();
+        self.bend = fresh.select(square * sine, self.bend);
+        if let Some(part) = &line.part {
+            self.swing = fresh.select(part.swing(sine, cosine), self.swing);
+        }
+        Mask::splat(rate.simd(), true)
+    }
+
+    #[inline(always)]
+    fn bend(&self) -> Pack<S, 1> {
+        self.bend
+    }
+
+    #[inline(always)]
+    fn turn(&mut self, lanes: Mask<S, 1>, time: Pack<S, 1>) {
+        let half = sincos_in_lanes(0.5 * self.rate * time);
+        let (s, c) = half;
+        let [axis, _] = self.at((2.0 * s * c, c * c - s * s));
+        // Of length 1: about Λ, or with the angle 0.
+        let still = Pack::splat(time.simd(), 0.0).lt(self.rate);
+        let about = self.precession.times(1.0 / still.select(self.rate, 1.0));
+        let later = then(self.turned, about, half);
+        self.axis = self.axis.or(lanes, axis);
+        self.turned = self.turned.or(lanes, later);
+    }
+
+    #[inline(always)]
+    fn pose(&mut self, _: &AxialBody, time: Pack<S, 1>) -> Self::Pose {
+        self.at(sincos_in_lanes(self.rate * time))
+    }
+
+    #[inline(always)]
+    fn moved(
+        &self,
+        &[axis, change]: &Self::Pose,
+        (_, ball): (usize, &LaneBall),
+        sign: f64,
+        [y, velocity]: [Vectors<S, 1>; 2],
+    ) -> [Vectors<S, 1>; 2] {
+        let height = sign * ball.place.z;
+        [axis.mul_add(height, y), change.mul_add(height, velocity)]
+    }
+
+    #[inline(always)]
+    fn nowhere(simd: S) -> Pack<S, 1> {
+        Pack::splat(simd, 0.0)
+    }
+
+    #[inline(always)]
+    fn choose(place: &mut Pack<S, 1>, lanes: Mask<S, 1>, ball: &LaneBall) {
+        *place = lanes.select(ball.place.z, *place);
+    }
+
+    #[inline(always)]
+    fn reached(&self, place: Pack<S, 1>, sign: f64, from: Vectors<S, 1>) -> Vectors<S, 1> {
+        self.axis.mul_add(sign * place, from)
+    }
+
+    #[inline(always)]
+    fn arm(&self, place: Pack<S, 1>, normal: Vectors<S, 1>) -> Vectors<S, 1> {
+        self.axis.cross(normal).times(place)
+    }
+
+    #[inline(always)]
+    fn compliance(&self, body: &AxialBody, arm: Vectors<S, 1>, from: Pack<S, 1>) -> Pack<S, 1> {
+        arm.dot(arm).mul_add(body.inverse, from)
+    }
+
+    #[inline(always)]
+    fn speed(&self, arm: Vectors<S, 1>) -> Pack<S, 1> {
+        self.precession.dot(arm)
+    }
+
+    #[inline(always)]
+    fn push(&mut self, body: &AxialBody, arm: Vectors<S, 1>, impulse: Pack<S, 1>) {
+        self.precession = arm.mul_add(impulse * body.inverse, self.precession);
+    }
+
+    #[inline(always)]
+    fn look(
+        all: &mut Encountering<S, Self>,
+        pair: &LanePair<'_, '_, AxialBody>,
+        active: Mask<S, 1>,
+    ) -> NearestParts<S> {
+        match AxialBody::parts(pair) {
+            Some(parts) => all.look_round(&parts, active),
+            None => all.look(pair),
+        }
+    }
+
+    #[inline(always)]
+    fn meet(
+        all: &mut Encountering<S, Self>,
+        pair: &LanePair<'_, '_, AxialBody>,
+        touched: Mask<S, 1>,
+        balls: Pack<S, 1>,
+    ) -> LaneContact<S, Pack<S, 1>> {
+        match AxialBody::parts(pair) {
+            Some(parts) => all.meet_round(&parts, touched),
+            None => all.meet(pair, balls),
+        }
+    }
+
+    fn ended(simd: S) -> EndedRotations<S> {
+        EndedRotations::none(simd)
+    }
+
+    #[inline(always)]
+    fn add(
+        ended: &mut EndedRotations<S>,
+        all: &Encountering<S, Self>,
+        lane: usize,
+        job: usize,
+        run: &mut LaneEncounters<'_, '_, '_, AxialBody>,
+    ) {
+        ended.add(all, lane, job, run);
+        if ended.count == Pack::<S, 1>::WIDTH {
+            ended.find(run.pair, run.ends);
+        }
+    }
+
+    #[inline(always)]
+    fn find(
+        ended: &mut EndedRotations<S>,
+        pair: &LanePair<'_, '_, AxialBody>,
+        ends: &mut [Option<End>],
+    ) {
+        ended.find(pair, ends);
+    }
+}
+
+/// A rotation, and then one about a unit vector by the angle of which sine and cosine of the half are given.
+#[inline(always)]
+fn then<S: Simd>(
+    turned: Quaternions<S>,
+    about: Vectors<S, 1>,
+    (sine, cosine): (Pack<S, 1>, Pack<S, 1>),
+) -> Quaternions<S> {
+    let v = about.times(sine);
+    Quaternions {
+        w: cosine * turned.w - v.dot(turned.v),
+        v: turned
+            .v
+            .mul_add(cosine, v.mul_add(turned.w, v.cross(turned.v))),
+    }
+}
+
+impl<S: Simd> Encountering<S, AxialFlight<S>> {
+    /// Looks at spheroids in some lanes.
+    #[inline(always)]
+    fn look_round(&mut self, parts: &RoundParts<'_>, active: Mask<S, 1>) -> NearestParts<S> {
+        let bodies = [
+            self.bodies[0].turning(self.time),
+            self.bodies[1].turning(self.time),
+        ];
+        let axes = [bodies[0].axis, bodies[1].axis];
+        let apart = self.velocity.mul_add(self.time, self.apart);
+        let between = parts.between(apart, axes);
+        self.normal = parts.normal(self.normal(between), between, axes, active, true);
+        let zero = Pack::splat(self.time.simd(), 0.0);
+        let leaves = self.time.eq(0.0) & zero.lt(self.left);
+        let motion = [apart, self.velocity];
+        let found = parts.step(self.normal, motion, &bodies, (leaves, self.left_speed));
+        NearestParts {
+            clear: found.clear,
+            balls: zero + 1.0,
+            rate: found.rate,
+            bound: found.bound,
+        }
+    }
+
+    /// The last normal, or that between the centres.
+    #[inline(always)]
+    fn normal(&self, between: Vectors<S, 1>) -> Vectors<S, 1> {
+        let none = self.normal.dot(self.normal).eq(0.0);
+        let along = between.times(1.0 / between.dot(between).sqrt());
+        self.normal.or(none, along)
+    }
+
+    /// Where spheroids touch, in some lanes.
+    #[inline(always)]
+    fn meet_round(
+        &mut self,
+        parts: &RoundParts<'_>,
+        touched: Mask<S, 1>,
+    ) -> LaneContact<S, Pack<S, 1>> {
+        let axes = [self.bodies[0].axis, self.bodies[1].axis];
+        let between = parts.between(self.apart, axes);
+        self.normal = parts.normal(self.normal, between, axes, touched, false);
+        let found = parts.contact(self.normal, between, axes);
+        (self.normal, found.places, found.radius)
+    }
+}
+
+/// The rotation of bodies whose encounters have ended, one in each lane: it is found for as many as there are lanes at once.
+pub(in crate::pair) struct EndedRotations<S: Simd> {
+    count: usize,
+    jobs: [usize; MOST_LANES],
+    bodies: [EndedRotation<S>; 2],
+}
+
+/// Of one of both bodies: its attitude at first, its rotation since then but for that about its own axis, **Λ**/J, the spin about the axis, and the time.
+#[derive(Clone, Copy)]
+struct EndedRotation<S: Simd> {
+    attitude: Quaternions<S>,
+    turned: Quaternions<S>,
+    precession: Vectors<S, 1>,
+    own: Pack<S, 1>,
+    time: Pack<S, 1>,
+}
+
+impl<S: Simd> EndedRotations<S> {
+    #[inline(always)]
+    fn none(simd: S) -> Self {
+        let zero = Pack::splat(simd, 0.0);
+        let body = EndedRotation {
+            attitude: Quaternions::splat(simd, Quaternion::IDENTITY),
+            turned: Quaternions::splat(simd, Quaternion::IDENTITY),
+            precession: Vectors::splat(simd, Vector::default()),
+            own: zero,
+            time: zero,
+        };
+        Self {
+            count: 0,
+            jobs: [0; MOST_LANES],
+            bodies: [body; 2],
+        }
+    }
+
+    /// Adds those of a lane.
+    #[inline(always)]
+    fn add(
+        &mut self,
+        all: &Encountering<S, AxialFlight<S>>,
+        lane: usize,
+        job: usize,
+        run: &LaneEncounters<'_, '_, '_, AxialBody>,
+    ) {
+        let (to, from) = (self.count, &run.approaches[job]);
+        self.jobs[to] = job;
+        for i in 0..2 {
+            let (body, line, state) = (&mut self.bodies[i], &all.bodies[i], &from.states[i]);
+            body.attitude.put(to, state.attitude);
+            body.turned.put(to, line.turned.lane(lane));
+            body.precession.put(to, line.precession.lane(lane));
+            body.own.as_mut_slice()[to] = state.spin.parts()[run.pair.shapes[i].axis];
+            body.time.as_mut_slice()[to] = from.passed[i] + all.clock.as_slice()[lane];
+        }
+        self.count += 1;
+    }
+
+    /// Finds all of them.
+    #[inline(always)]
+    fn find(&mut self, pair: &LanePair<'_, '_, AxialBody>, ends: &mut [Option<End>]) {
+        for i in 0..2 {
+            let (line, body) = (&pair.shapes[i], &self.bodies[i]);
+            let axis = Vectors::splat(body.own.simd(), UNITS[line.axis]);
+            let (sine, cosine) = sincos_in_lanes(0.5 * body.own * (1.0 - line.ratio) * body.time);
+            let roll = Quaternions {
+                w: cosine,
+                v: axis.times(sine),
+            };
+            let rolled = body.attitude.times(roll);
+            let attitude = body.turned.times(rolled).normalized();
+            let spins = attitude.inverse().rotate(body.precession);
+            for lane in 0..self.count {
+                if let Some(Ok(end)) = &mut ends[self.jobs[lane]] {
+                    let mut spin = spins.lane(lane).parts();
+                    spin[line.axis] = body.own.as_slice()[lane];
+                    let [x, y, z] = spin;
+                    end.states[i].attitude = attitude.lane(lane);
+                    end.states[i].spin = Vector::new(x, y, z);
+                }
+            }
+        }
+        self.count = 0;
+    }
+}
