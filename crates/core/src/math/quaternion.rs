@@ -92,7 +92,7 @@ pub(crate) fn product<T: Part>([aw, ax, ay, az]: [T; 4], [bw, bx, by, bz]: [T; 4
 /// The product of two whose length is 1 but for rounding, with length 1. Over many turns by the same angle rounding must not lean to one side, as it
 /// does in w(1 − 10⁻¹⁶): so the turn's difference from 1 is multiplied, and what the last sum has lost is added with what the length lacks.
 #[inline(always)]
-pub(crate) fn turned<T: Part + Sub<f64, Output = T>>(
+fn turned<T: Part + Sub<f64, Output = T>>(
     [aw, ax, ay, az]: [T; 4],
     [bw, bx, by, bz]: [T; 4],
 ) -> [T; 4]
@@ -190,6 +190,12 @@ impl<S: Simd> Quaternions<S> {
     #[inline(always)]
     pub fn times(self, second: Self) -> Self {
         Self::of(product(self.parts(), second.parts()))
+    }
+
+    /// [`turned`].
+    #[inline(always)]
+    pub fn turned(self, turn: Self) -> Self {
+        Self::of(turned(self.parts(), turn.parts()))
     }
 
     #[inline(always)]

@@ -21,6 +21,12 @@ pub(super) fn largest_spin<T: Part + Mul<f64, Output = T>>(moments: [f64; 3], sp
     x + y + z + squares * ((middle - least) * (most - middle) / (least * most))
 }
 
+/// [`SpinBounds::whole`], from a and the largest |ω|².
+#[inline(always)]
+pub(super) fn largest_acceleration<T: Mul<f64, Output = T>>(asymmetry: f64, square: T) -> T {
+    square * (1.0 + asymmetry / 3.0_f64.sqrt())
+}
+
 /// Bounds on the rotation in a flight, where a is the asymmetry of the body ([`crate::shape::Top`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpinBounds {
@@ -45,7 +51,7 @@ impl SpinBounds {
         Self {
             fastest,
             radian: 1.0 / fastest,
-            whole: (1.0 + change) * largest_spin,
+            whole: largest_acceleration(asymmetry, largest_spin),
             across: (0.5 + change) * largest_spin,
         }
     }

@@ -9,8 +9,7 @@
 //! Near the separatrix q is nearly 1, and with **Λ** along axis 3 η is infinite: there is none, and a series is used.
 
 use super::top::energy_error;
-use crate::math::quaternion::{self, turned};
-use crate::math::{Quaternions, Vectors};
+use crate::math::{Quaternion, Quaternions, Vectors};
 use crate::shape::Top;
 use crate::simd::elementary::{exp_m1_in_lanes, sincos_in_lanes};
 use crate::simd::{Mask, Pack};
@@ -22,7 +21,7 @@ const TERMS: usize = 7;
 const LARGEST: f64 = 0.42;
 /// Least modulus: below it **Λ** is so near to axis 3 that η is large.
 const LEAST: f64 = 1e-10;
-/// See [`nome`].
+/// See [`nome`]; and the coefficients of its series.
 const SERIES: f64 = 0.17;
 const NOME: [f64; 9] = [
     1.0,
@@ -40,7 +39,7 @@ const SMALL: f64 = 1e-18;
 
 /// A rotation in each lane.
 #[derive(Debug, Clone)]
-pub(crate) struct Elliptic<S: Simd> {
+pub(super) struct Elliptic<S: Simd> {
     /// The axes of the body from the least moment to the largest: axes 1, 2 and 3 in the lanes that are `above`, else axes 3, 2 and 1. Axis 3 is turned round
     /// where they would be left-handed.
     order: [usize; 3],
@@ -65,7 +64,7 @@ pub(crate) struct Elliptic<S: Simd> {
     sines: [Pack<S, 2>; TERMS],
     cosines: [Pack<S, 2>; TERMS],
     /// The attitude at the beginning after the rotation back from that at the time 0 in the axes of **Λ**, in axes 1, 2 and 3.
-    start: [Pack<S, 1>; 4],
+    start: Quaternions<S>,
 }
 
 /// The nome of a modulus m with its complement m′: A. Abramowitz and I. A. Stegun, *Handbook of Mathematical Functions*, 17.3.21, whose terms beyond these
@@ -159,7 +158,7 @@ impl<S: Simd> Elliptic<S> {
     pub fn new(top: &Top, attitude: Quaternions<S>, spin: Vectors<S, 1>) -> (Self, Mask<S, 1>) {
         let simd = spin.x.simd();
         let (zero, unit) = (Pack::splat(simd, 0.0), Pack::splat(simd, 1.0));
-        let w = [spin.x, spin.y, spin.z];
+        let w = spin.parts();
         let moments = top.moments();
         let order = top.order();
         let [low, middle, high] = order;
@@ -285,15 +284,14 @@ impl<S: Simd> Elliptic<S> {
             squares,
             sines,
             cosines,
-            start: [unit, zero, zero, zero],
+            start: Quaternions::splat(simd, Quaternion::IDENTITY),
         };
-        let v = [attitude.v.x, attitude.v.y, attitude.v.z];
+        let v = attitude.v.parts();
         let (x, z) = (above.select(v[low], v[high]), above.select(v[high], v[low]));
         let (sine, cosine) = sincos_in_lanes(phase);
         let (_, argument) = found.thetas(sine, cosine);
-        let [rw, rx, ry, rz] = found.frame([w1, w2, w3], argument, (zero, unit), zero);
-        found.start =
-            quaternion::product([attitude.w, x, v[middle], hand * z], [rw, -rx, -ry, -rz]);
+        let turned = found.frame([w1, w2, w3], argument, (zero, unit), zero);
+        found.start = Quaternions::of([attitude.w, x, v[middle], hand * z]).times(turned.inverse());
         (found, serves)
     }
 
@@ -308,8 +306,8 @@ impl<S: Simd> Elliptic<S> {
         let w = [one * theta[0], two * theta[1], three * theta[2]];
         let (spin, more) = self.spin(w);
         let turn = self.frame(w, argument, (turn_sine, turn_cosine), more);
-        let [w, x, y, z] = turned(self.start, turn);
-        let v = self.of_body([x, y, z]);
+        let Quaternions { w, v } = self.start.turned(turn);
+        let v = self.of_body(v.parts());
         (Quaternions { w, v }, self.of_body(spin))
     }
 
@@ -381,7 +379,7 @@ impl<S: Simd> Elliptic<S> {
         [real, imaginary]: [Pack<S, 1>; 2],
         turn: (Pack<S, 1>, Pack<S, 1>),
         more: Pack<S, 1>,
-    ) -> [Pack<S, 1>; 4] {
+    ) -> Quaternions<S> {
         let [a, b, c] = self.moments;
         let [x, y, z] = [a * w[0], b * w[1], c * w[2]];
         let square = x * x + y * y;
@@ -405,12 +403,12 @@ impl<S: Simd> Elliptic<S> {
         let minus_cosine = about_cosine * plus_cosine + about_sine * plus_sine;
         // By ψ about the third axis, back by the tilt about the second and back by the angle about the third.
         let (sine, cosine) = turn;
-        [
+        Quaternions::of([
             tilt_cosine * (cosine * plus_cosine + sine * plus_sine),
             tilt_sine * (sine * minus_cosine + cosine * minus_sine),
             -tilt_sine * (cosine * minus_cosine - sine * minus_sine),
             tilt_cosine * (sine * plus_cosine - cosine * plus_sine),
-        ]
+        ])
     }
 }
 

@@ -7,7 +7,6 @@
 use super::elliptic::Elliptic;
 use super::series::Series;
 use super::top::energy_error;
-use crate::math::quaternion::turned;
 use crate::math::{Quaternion, Quaternions, UNITS, Vector, Vectors, sum};
 use crate::shape::{Symmetry, Top};
 use crate::simd::elementary::sincos_in_lanes;
@@ -18,9 +17,6 @@ use pulp::{Scalar, Simd, WithSimd};
 #[derive(Debug, Clone)]
 pub struct Rotation {
     top: Top,
-    /// The attitude, and ω in the axes of the body, at the beginning.
-    attitude: Quaternion,
-    spin: Vector,
     closed: Rotations<Scalar>,
     /// What serves instead. Rare, and four times as large as all else, so that it is not moved about with the others.
     series: Option<Box<Series>>,
@@ -51,8 +47,6 @@ impl Rotation {
         let (closed, serves) = Rotations::new(&top, attitude.in_lane(), spin.in_lane());
         Self {
             top,
-            attitude,
-            spin,
             closed,
             series: (!serves.all()).then(|| Box::new(Series::new(&top, attitude, spin))),
         }
@@ -62,18 +56,20 @@ impl Rotation {
     /// it adds to the energy is taken off ω.
     #[inline(always)]
     pub fn at(&mut self, time: f64) -> (Quaternion, Vector) {
+        let Rotations { attitude, spin, .. } = &self.closed;
+        let (attitude, first) = (attitude.lane(0), spin.lane(0));
         if time == 0.0 {
-            return (self.attitude, self.spin);
+            return (attitude, first);
         }
         let Some(series) = &mut self.series else {
             let (attitude, spin) = self.closed.at(one(time));
             return (attitude.lane(0), spin.lane(0));
         };
         if time < series.start() {
-            **series = Series::new(&self.top, self.attitude, self.spin);
+            **series = Series::new(&self.top, attitude, first);
         }
         let (attitude, spin) = series.at(&self.top, time);
-        let lost = energy_error(self.top.moments(), self.spin.parts(), spin.parts());
+        let lost = energy_error(self.top.moments(), first.parts(), spin.parts());
         let part = 0.5 * lost / self.top.twice_energy(spin);
         (attitude, spin + spin * part)
     }
@@ -176,7 +172,7 @@ impl<S: Simd> Rotations<S> {
         match &self.way {
             Way::Steady(half, direction) => {
                 let turn = about(*direction, *half * time);
-                (self.turned(self.attitude, turn), self.spin)
+                (self.attitude.turned(turn), self.spin)
             }
             Way::Precession((half, direction), own, axis) => {
                 let precessed = self.attitude.times(about(*direction, *half * time));
@@ -186,8 +182,7 @@ impl<S: Simd> Rotations<S> {
                     w: cosine,
                     v: along.times(sine),
                 };
-                let spin = self.back(*axis, sine, cosine);
-                (self.turned(precessed, turn), spin)
+                (precessed.turned(turn), self.back(*axis, sine, cosine))
             }
             Way::Elliptic(elliptic, rests) => {
                 let (attitude, spin) = elliptic.at(time);
@@ -195,15 +190,10 @@ impl<S: Simd> Rotations<S> {
                     return (attitude, spin);
                 }
                 let still = Quaternions::splat(time.simd(), Quaternion::IDENTITY);
-                let attitude = attitude.or(*rests, self.turned(self.attitude, still));
+                let attitude = attitude.or(*rests, self.attitude.turned(still));
                 (attitude, spin.or(*rests, self.spin))
             }
         }
-    }
-
-    #[inline(always)]
-    fn turned(&self, attitude: Quaternions<S>, turn: Quaternions<S>) -> Quaternions<S> {
-        Quaternions::of(turned(attitude.parts(), turn.parts()))
     }
 
     /// ω at the beginning turned back about the axis of symmetry, by the sine and the cosine of half the angle, with the length that it had.
@@ -213,7 +203,7 @@ impl<S: Simd> Rotations<S> {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let [a, b] = [spin[i], spin[j]];
         let (less, across) = (-2.0 * sine * sine, 2.0 * sine * cosine);
-        // As in [`turned`].
+        // As in [`Quaternions::turned`].
         let (x, dx) = sum(a, less * a + across * b);
         let (y, dy) = sum(b, less * b - across * a);
         // Squares, and what they lose by rounding.

@@ -1,6 +1,6 @@
 //! Euler's equations of a free body.
 
-use super::bounds::{SpinBounds, largest_spin};
+use super::bounds::{SpinBounds, largest_acceleration, largest_spin};
 use crate::math::quaternion::Part;
 use crate::math::{Quaternion, Vector, Vectors};
 use crate::shape::Top;
@@ -57,7 +57,8 @@ impl Top {
     /// [`SpinBounds::whole`] in each lane.
     #[inline(always)]
     pub(crate) fn largest_acceleration<S: Simd>(&self, spin: Vectors<S, 1>) -> Pack<S, 1> {
-        largest_spin(self.moments(), spin.parts()) * (1.0 + self.asymmetry / 3.0_f64.sqrt())
+        let square = largest_spin(self.moments(), spin.parts());
+        largest_acceleration(self.asymmetry, square)
     }
 
     /// Bounds on the rotation in a flight.

@@ -156,18 +156,18 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
     }
 
     #[inline(always)]
-    fn put(&mut self, lane: usize, line: &AxialBody, state: &FreeBody) {
+    fn put(&mut self, lane: usize, body: &AxialBody, state: &FreeBody) {
         let mut spin = state.spin.parts();
-        spin[line.axis] *= line.ratio;
+        spin[body.axis] *= body.ratio;
         let [x, y, z] = spin;
-        self.axis.put(lane, state.attitude.rotate(UNITS[line.axis]));
+        self.axis.put(lane, state.attitude.rotate(UNITS[body.axis]));
         self.precession
             .put(lane, state.attitude.rotate(Vector::new(x, y, z)));
         self.turned.put(lane, Quaternion::IDENTITY);
     }
 
     #[inline(always)]
-    fn begin(&mut self, line: &AxialBody, fresh: Mask<S, 1>) -> Mask<S, 1> {
+    fn begin(&mut self, body: &AxialBody, fresh: Mask<S, 1>) -> Mask<S, 1> {
         let square = self.precession.dot(self.precession);
         let rate = square.sqrt();
         let turns = Pack::splat(rate.simd(), 0.0).lt(rate);
@@ -177,7 +177,8 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
         let third = about.cross(self.axis);
         let second = third.cross(about);
         let cosine = about.dot(self.axis);
-        let along = about.times(cosine);
+        // What does not turn stays as long as it is: its projection on itself would be longer in each flight.
+        let along = self.axis.or(turns, about.times(cosine));
         let [one, two, three] = self.motion;
         self.motion = [
             one.or(fresh, along),
@@ -187,7 +188,7 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
         self.rate = fresh.select(rate, self.rate);
         let sine = third.dot(third).sqrt();
         self.bend = fresh.select(square * sine, self.bend);
-        if let Some(part) = &line.part {
+        if let Some(part) = &body.part {
             self.swing = fresh.select(part.swing(sine, cosine), self.swing);
         }
         Mask::splat(rate.simd(), true)
@@ -426,10 +427,10 @@ impl<S: Simd> EndedRotations<S> {
         let (to, from) = (self.count, &run.approaches[job]);
         self.jobs[to] = job;
         for i in 0..2 {
-            let (body, line, state) = (&mut self.bodies[i], &all.bodies[i], &from.states[i]);
+            let (body, flight, state) = (&mut self.bodies[i], &all.bodies[i], &from.states[i]);
             body.attitude.put(to, state.attitude);
-            body.turned.put(to, line.turned.lane(lane));
-            body.precession.put(to, line.precession.lane(lane));
+            body.turned.put(to, flight.turned.lane(lane));
+            body.precession.put(to, flight.precession.lane(lane));
             body.own.as_mut_slice()[to] = state.spin.parts()[run.pair.shapes[i].axis];
             body.time.as_mut_slice()[to] = from.passed[i] + all.clock.as_slice()[lane];
         }
@@ -440,9 +441,9 @@ impl<S: Simd> EndedRotations<S> {
     #[inline(always)]
     fn find(&mut self, pair: &LanePair<'_, '_, AxialBody>, ends: &mut [Option<End>]) {
         for i in 0..2 {
-            let (line, body) = (&pair.shapes[i], &self.bodies[i]);
-            let axis = Vectors::splat(body.own.simd(), UNITS[line.axis]);
-            let (sine, cosine) = sincos_in_lanes(0.5 * body.own * (1.0 - line.ratio) * body.time);
+            let (shape, body) = (&pair.shapes[i], &self.bodies[i]);
+            let axis = Vectors::splat(body.own.simd(), UNITS[shape.axis]);
+            let (sine, cosine) = sincos_in_lanes(0.5 * body.own * (1.0 - shape.ratio) * body.time);
             let roll = Quaternions {
                 w: cosine,
                 v: axis.times(sine),
@@ -453,7 +454,7 @@ impl<S: Simd> EndedRotations<S> {
             for lane in 0..self.count {
                 if let Some(Ok(end)) = &mut ends[self.jobs[lane]] {
                     let mut spin = spins.lane(lane).parts();
-                    spin[line.axis] = body.own.as_slice()[lane];
+                    spin[shape.axis] = body.own.as_slice()[lane];
                     let [x, y, z] = spin;
                     end.states[i].attitude = attitude.lane(lane);
                     end.states[i].spin = Vector::new(x, y, z);

@@ -29,6 +29,8 @@ pub(super) struct LanePair<'a, 'b, B> {
     law: &'a Law<'b>,
     shapes: [B; 2],
     surfaces: Surfaces,
+    /// The largest distance of a ball from the centre of mass, of both.
+    furthest: [f64; 2],
     reach: f64,
 }
 
@@ -162,10 +164,15 @@ impl<'a, 'b, B: LaneBody> LanePair<'a, 'b, B> {
         }
         let [one, two] = bodies;
         let shapes = [B::new(one)?, B::new(two)?];
+        let furthest = |shape: &B| {
+            let distances = shape.balls().iter().map(|ball| ball.distance);
+            distances.fold(0.0, f64::max)
+        };
         Some(Self {
             bodies,
             law,
             surfaces: B::surfaces(bodies, &shapes)?,
+            furthest: [furthest(&shapes[0]), furthest(&shapes[1])],
             shapes,
             reach: one.reach + two.reach,
         })
@@ -328,11 +335,7 @@ impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
         for i in 0..2 {
             let body = &mut self.bodies[i];
             self.unknown = self.unknown | (fresh & !body.begin(&pair.shapes[i], fresh));
-            let mut furthest = 0.0_f64;
-            for ball in pair.shapes[i].balls() {
-                furthest = furthest.max(ball.distance);
-            }
-            most = body.bend().mul_add(furthest, most);
+            most = body.bend().mul_add(pair.furthest[i], most);
         }
         if pair.surfaces == Surfaces::Spheres {
             // They touch where they come into reach of each other, and that once.
