@@ -10,37 +10,25 @@ use std::f64::consts::TAU;
 
 /// A uniform number in [0, 1) with 53 random bits: Philox4x32-10, key = seed, counter = (particle, draw).
 pub fn uniform(seed: u64, particle: u64, draw: u32) -> f64 {
-    let (low, high) = halves(particle);
-    let key = halves(seed);
-    let [a, b, ..] = philox4x32_10([low, high, draw, 0], [key.0, key.1]);
-    unit(a, b)
+    two(words(seed, particle, [draw, 0])).0
 }
 
 /// Two uniform numbers in [0, 1) with 53 random bits each, for draw `index` of a sampler: counter = (index, 0, 1), whose last
 /// word is 0 for particles.
 pub fn pair(seed: u64, index: u64) -> (f64, f64) {
-    let (low, high) = halves(index);
-    let key = halves(seed);
-    let [a, b, c, d] = philox4x32_10([low, high, 0, 1], [key.0, key.1]);
-    (unit(a, b), unit(c, d))
+    two(words(seed, index, [0, 1]))
 }
 
 /// A uniform number in (0, 1) for an impact of a particle, counted from 0: counter = (particle, impact, 2), whose last word is 0 or 1 for
 /// the others.
 #[inline(always)]
 pub fn of_impact(seed: u64, particle: u64, impact: u64) -> f64 {
-    let (low, high) = halves(particle);
-    let key = halves(seed);
-    let [a, b, ..] = philox4x32_10([low, high, impact as u32, 2], [key.0, key.1]);
-    unit(a, b) + 2.0_f64.powi(-54)
+    two(words(seed, particle, [impact as u32, 2])).0 + 2.0_f64.powi(-54)
 }
 
 /// Two uniform numbers in [0, 1) for a draw of an asperity of a rough body: counter = (asperity, draw, 3).
 pub fn of_asperity(seed: u64, asperity: u64, draw: u32) -> (f64, f64) {
-    let (low, high) = halves(asperity);
-    let key = halves(seed);
-    let [a, b, c, d] = philox4x32_10([low, high, draw, 3], [key.0, key.1]);
-    (unit(a, b), unit(c, d))
+    two(words(seed, asperity, [draw, 3]))
 }
 
 /// Two uniform numbers in [0, 1) for a draw of some encounters of two bodies, or particles of a gas: counter = (encounter, draw, 4).
@@ -48,23 +36,20 @@ pub fn of_encounters(seed: u64, first: u64, draw: u32, numbers: &mut [(f64, f64)
     in_row(seed, first.., [draw, 4], numbers);
 }
 
-/// Two uniform numbers in [0, 1) for some candidates of a gas: counter = (candidate, 0, 5).
-pub fn of_candidates(seed: u64, first: u64, numbers: &mut [(f64, f64)]) {
-    in_row(seed, first.., [0, 5], numbers);
-}
-
-/// Two uniform numbers in [0, 1) for a draw, from 1 on, of the encounter of a candidate, of some of them: counter = (candidate, draw, 5).
-pub fn of_some_candidates(seed: u64, candidates: &[u64], draw: u32, numbers: &mut [(f64, f64)]) {
-    in_row(seed, candidates.iter().copied(), [draw, 5], numbers);
+/// Two uniform numbers in [0, 1) for some candidates of a gas, draw 0, or for their encounters, draws from 1 on: counter = (candidate, draw, 5).
+pub fn of_candidates(
+    seed: u64,
+    candidates: impl Iterator<Item = u64>,
+    draw: u32,
+    numbers: &mut [(f64, f64)],
+) {
+    in_row(seed, candidates, [draw, 5], numbers);
 }
 
 /// The same for one.
 #[inline(always)]
 pub fn of_candidate(seed: u64, candidate: u64, draw: u32) -> (f64, f64) {
-    let (low, high) = halves(candidate);
-    let key = halves(seed);
-    let [a, b, c, d] = philox4x32_10([low, high, draw, 5], [key.0, key.1]);
-    (unit(a, b), unit(c, d))
+    two(words(seed, candidate, [draw, 5]))
 }
 
 /// Two numbers each for counters that begin with these numbers and end with the same two words.
@@ -91,20 +76,18 @@ impl<I: Iterator<Item = u64>> WithSimd for Row<'_, I> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         const BLOCK: usize = 64;
-        let (key, [third, last]) = (halves(self.seed), self.rest);
-        let (mut words, mut counters) = ([[0; 4]; BLOCK], [0; BLOCK]);
+        let (mut found, mut counters) = ([[0; 4]; BLOCK], [0; BLOCK]);
         let mut first = self.first;
         for some in self.numbers.chunks_mut(BLOCK) {
             for (counter, number) in counters[..some.len()].iter_mut().zip(&mut first) {
                 *counter = number;
             }
             // By itself, this loop is compiled for vectors.
-            for (words, &number) in words[..some.len()].iter_mut().zip(&counters) {
-                let (low, high) = halves(number);
-                *words = philox4x32_10([low, high, third, last], [key.0, key.1]);
+            for (found, &number) in found[..some.len()].iter_mut().zip(&counters) {
+                *found = words(self.seed, number, self.rest);
             }
-            for (pair, &[a, b, c, d]) in some.iter_mut().zip(&words) {
-                *pair = (unit(a, b), unit(c, d));
+            for (pair, &found) in some.iter_mut().zip(&found) {
+                *pair = two(found);
             }
         }
     }
@@ -187,15 +170,22 @@ fn normals_in_lanes<S: Simd>(mut size: Pack<S, 1>, turn: Pack<S, 1>) -> [Pack<S,
     [size * sine, size * cosine]
 }
 
+/// The words for the counter of a number and two more words.
 #[inline(always)]
-fn unit(low: u32, high: u32) -> f64 {
-    let bits = u64::from(low) | u64::from(high) << 32;
-    (bits >> 11) as f64 * 2.0_f64.powi(-53)
+fn words(seed: u64, number: u64, [third, last]: [u32; 2]) -> [u32; 4] {
+    let halves = |x: u64| [x as u32, (x >> 32) as u32];
+    let [low, high] = halves(number);
+    philox4x32_10([low, high, third, last], halves(seed))
 }
 
+/// Two numbers in [0, 1) out of words.
 #[inline(always)]
-fn halves(x: u64) -> (u32, u32) {
-    (x as u32, (x >> 32) as u32)
+fn two([a, b, c, d]: [u32; 4]) -> (f64, f64) {
+    let unit = |low, high| {
+        let bits = u64::from(low) | u64::from(high) << 32;
+        (bits >> 11) as f64 * 2.0_f64.powi(-53)
+    };
+    (unit(a, b), unit(c, d))
 }
 
 #[cfg(test)]
@@ -215,12 +205,12 @@ mod tests {
     fn rows_are_what_each_is() {
         let first = (1 << 32) - 70;
         let mut numbers = [(0.0, 0.0); 150];
-        of_candidates(7, first, &mut numbers);
+        of_candidates(7, first.., 0, &mut numbers);
         for (number, i) in numbers.into_iter().zip(first..) {
             assert_eq!(number, of_candidate(7, i, 0));
         }
         let some: Vec<_> = (0..150).map(|i| i * i).collect();
-        of_some_candidates(7, &some, 3, &mut numbers);
+        of_candidates(7, some.iter().copied(), 3, &mut numbers);
         for (number, i) in numbers.into_iter().zip(some) {
             assert_eq!(number, of_candidate(7, i, 3));
         }

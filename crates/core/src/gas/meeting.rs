@@ -4,7 +4,7 @@ use super::row::bound;
 use super::{LINE, TOGETHER};
 use crate::math::{Vector, Vectors};
 use crate::pair::{Follower, approach};
-use crate::random::of_some_candidates;
+use crate::random::of_candidates;
 use crate::simd::elementary::sincos_in_lanes;
 use crate::simd::{LANES, Pack};
 use pulp::{Simd, WithSimd};
@@ -74,7 +74,7 @@ impl WithSimd for Candidates<'_, '_, '_> {
             *counter = candidate.draws();
         }
         let draws = &mut draws[..self.candidates.len()];
-        of_some_candidates(self.seed, &counters, LINE, draws);
+        of_candidates(self.seed, counters.iter().copied(), LINE, draws);
         let smooth = self.follower.smooth_balls();
         let mut decided = Decided::default();
         let width = Pack::<S, 1>::WIDTH;

@@ -91,7 +91,7 @@ impl WithSimd for DrawnCandidates<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let mut numbers = [(0.0, 0.0); ROW];
-        of_candidates(self.seed, self.row.number, &mut numbers);
+        of_candidates(self.seed, self.row.number.., 0, &mut numbers);
         let others = (self.particles - 1) as f64;
         let pairs = (others + 1.0) * others;
         let [first, second] = &mut self.row.pairs;

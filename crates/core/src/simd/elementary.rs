@@ -13,9 +13,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LN_2, LOG
 /// Largest |x|, in rad, for which sine and cosine are accurate.
 pub const RANGE: f64 = 1_048_576.0;
 
-const TWO_OVER_PI: f64 = FRAC_2_PI;
-const HALF_PI_HIGH: f64 = FRAC_PI_2;
-/// π/2 − HALF_PI_HIGH.
+/// What π/2 has beyond its double.
 const HALF_PI_LOW: f64 = 6.123_233_995_736_766e-17;
 /// 1.5 · 2⁵²: adding it rounds to the nearest integer and leaves that integer in the low bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
@@ -84,9 +82,9 @@ pub fn sincos(x: f64) -> (f64, f64) {
 /// (sin x, cos x) in every lane, for |x| ≤ [`RANGE`].
 #[inline(always)]
 pub(crate) fn sincos_in_lanes<S: Simd, const K: usize>(x: Pack<S, K>) -> (Pack<S, K>, Pack<S, K>) {
-    let shifted = x.mul_add(TWO_OVER_PI, ROUND);
+    let shifted = x.mul_add(FRAC_2_PI, ROUND);
     let turns = ROUND - shifted; // minus the number of quarter turns, an integer
-    let r = turns.mul_add(HALF_PI_LOW, turns.mul_add(HALF_PI_HIGH, x));
+    let r = turns.mul_add(HALF_PI_LOW, turns.mul_add(FRAC_PI_2, x));
 
     let r2 = r * r;
     let sine = (r * r2).mul_add(polynomial(SINE, r2), r);

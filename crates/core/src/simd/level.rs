@@ -53,29 +53,18 @@ impl Level {
     /// # Errors
     /// [`Error::Level`] for an unknown name, or a level that this machine does not have.
     pub fn named(name: &str) -> Result<Self, Error> {
-        let list = |levels: Vec<Self>| {
-            levels
-                .into_iter()
-                .map(Self::name)
-                .collect::<Vec<_>>()
-                .join(", ")
+        let known = Self::ALL.into_iter().find(|level| level.name() == name);
+        let (problem, allowed) = match known {
+            Some(level) if level.is_available() => return Ok(level),
+            Some(_) => ("this machine lacks it", Self::available().collect()),
+            None => ("no such SIMD level", Self::ALL.to_vec()),
         };
-        let Some(level) = Self::ALL.into_iter().find(|level| level.name() == name) else {
-            return Err(Error::Level {
-                name: name.to_owned(),
-                allowed: list(Self::ALL.to_vec()),
-                problem: "no such SIMD level",
-            });
-        };
-        if level.is_available() {
-            Ok(level)
-        } else {
-            Err(Error::Level {
-                name: name.to_owned(),
-                allowed: list(Self::available().collect()),
-                problem: "this machine lacks it",
-            })
-        }
+        let names: Vec<_> = allowed.into_iter().map(Self::name).collect();
+        Err(Error::Level {
+            name: name.to_owned(),
+            allowed: names.join(", "),
+            problem,
+        })
     }
 
     /// The levels of this machine, slowest first.
@@ -115,42 +104,21 @@ impl Level {
         Self::best().run(work)
     }
 
-    #[cfg(target_arch = "x86_64")]
     fn try_run<W: WithSimd>(self, work: W) -> Option<W::Output> {
-        use pulp::x86::{V3, V4};
         match self {
+            // On WebAssembly with vectors it would double the size of the module.
+            #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
             Self::Scalar => Some(Simd::vectorize(Scalar::new(), work)),
-            Self::Simd128 | Self::Neon => None,
-            Self::Avx2 => V3::try_new().map(|simd| Simd::vectorize(simd, work)),
-            Self::Avx512 => V4::try_new().map(|simd| Simd::vectorize(simd, work)),
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            Self::Simd128 => pulp::wasm::Simd128::try_new().map(|simd| Simd::vectorize(simd, work)),
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => pulp::aarch64::Neon::try_new().map(|simd| Simd::vectorize(simd, work)),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => pulp::x86::V3::try_new().map(|simd| Simd::vectorize(simd, work)),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => pulp::x86::V4::try_new().map(|simd| Simd::vectorize(simd, work)),
+            _ => None,
         }
-    }
-
-    #[cfg(target_arch = "aarch64")]
-    fn try_run<W: WithSimd>(self, work: W) -> Option<W::Output> {
-        use pulp::aarch64::Neon;
-        match self {
-            Self::Scalar => Some(Simd::vectorize(Scalar::new(), work)),
-            Self::Neon => Neon::try_new().map(|simd| Simd::vectorize(simd, work)),
-            Self::Simd128 | Self::Avx2 | Self::Avx512 => None,
-        }
-    }
-
-    // A scalar level as well would double the size of the module.
-    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-    fn try_run<W: WithSimd>(self, work: W) -> Option<W::Output> {
-        use pulp::wasm::Simd128;
-        let simd = (self == Self::Simd128).then(Simd128::try_new).flatten();
-        simd.map(|simd| Simd::vectorize(simd, work))
-    }
-
-    #[cfg(not(any(
-        target_arch = "x86_64",
-        target_arch = "aarch64",
-        all(target_arch = "wasm32", target_feature = "simd128")
-    )))]
-    fn try_run<W: WithSimd>(self, work: W) -> Option<W::Output> {
-        (self == Self::Scalar).then(|| Simd::vectorize(Scalar::new(), work))
     }
 }
 

@@ -305,32 +305,23 @@ impl<S: Simd, const K: usize> Mask<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> BitAnd for Mask<S, K> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        let (a, b, simd) = (self.masks, other.masks, self.simd);
-        self.with(each_vector!(r = a, k => simd.and_m64s(a[k], b[k])))
-    }
+/// A logical operator between masks.
+macro_rules! logical {
+    ($trait:ident, $method:ident, $simd:ident) => {
+        impl<S: Simd, const K: usize> $trait for Mask<S, K> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let (a, b, simd) = (self.masks, other.masks, self.simd);
+                self.with(each_vector!(r = a, k => simd.$simd(a[k], b[k])))
+            }
+        }
+    };
 }
 
-impl<S: Simd, const K: usize> BitOr for Mask<S, K> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        let (a, b, simd) = (self.masks, other.masks, self.simd);
-        self.with(each_vector!(r = a, k => simd.or_m64s(a[k], b[k])))
-    }
-}
-
-impl<S: Simd, const K: usize> BitXor for Mask<S, K> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitxor(self, other: Self) -> Self {
-        let (a, b, simd) = (self.masks, other.masks, self.simd);
-        self.with(each_vector!(r = a, k => simd.xor_m64s(a[k], b[k])))
-    }
-}
+logical!(BitAnd, bitand, and_m64s);
+logical!(BitOr, bitor, or_m64s);
+logical!(BitXor, bitxor, xor_m64s);
 
 impl<S: Simd, const K: usize> Not for Mask<S, K> {
     type Output = Self;
