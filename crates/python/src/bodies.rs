@@ -98,8 +98,7 @@ impl Rigid {
     /// Centre of mass in m, in the axes that the body was given in.
     #[getter]
     fn centre(&self) -> [f64; 3] {
-        let Vector { x, y, z } = self.0.inertia.centre;
-        [x, y, z]
+        self.0.inertia.centre.parts()
     }
 
     /// Tensor of inertia about the centre of mass in kg m², in the same axes.
@@ -117,8 +116,7 @@ impl Rigid {
     /// The rotation from the principal axes to those that the body was given in, as a quaternion (w, x, y, z).
     #[getter]
     fn principal_axes(&self) -> [f64; 4] {
-        let Quaternion { w, x, y, z } = self.0.axes;
-        [w, x, y, z]
+        self.0.axes.parts()
     }
 
     /// The rims of a solid of revolution that can touch, rows (z, r) in m.
@@ -158,14 +156,13 @@ impl Rigid {
     /// Centre and radius of each ball or vertex, rows (x, y, z, radius) in m and the axes that the body was given in.
     fn balls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let balls = self.0.balls().map_err(python_error)?;
-        let mut rows =
-            collected("asperities", balls.iter().map(|_| [0.0; 4])).map_err(python_error)?;
-        for (row, ball) in rows.iter_mut().zip(&balls) {
-            let Vector { x, y, z } = ball.centre;
-            *row = [x, y, z, ball.radius];
-        }
-        let count = rows.len();
-        rows.into_flattened().into_pyarray(py).reshape([count, 4])
+        let row = |ball: &RigidBall| {
+            let [x, y, z] = ball.centre.parts();
+            [x, y, z, ball.radius]
+        };
+        let rows = collected("asperities", balls.iter().map(row)).map_err(python_error)?;
+        let rows = rows.into_flattened().into_pyarray(py);
+        rows.reshape([balls.len(), 4])
     }
 }
 
@@ -218,17 +215,14 @@ fn turned<'py>(
         .map(|((&[w, x, y, z], &[a, b, c]), &time)| {
             let principal = Quaternion::new(w, x, y, z).normalized() * axes;
             let (principal, spin) = top.turned(principal, Vector::new(a, b, c), time);
-            let Quaternion { w, x, y, z } = principal * axes.inverse();
-            ([w, x, y, z], [spin.x, spin.y, spin.z])
+            ((principal * axes.inverse()).parts(), spin.parts())
         })
         .unzip();
-    let table = |rows: Vec<f64>, width: usize| {
-        let count = rows.len() / width;
-        rows.into_pyarray(py).reshape([count, width])
-    };
+    let count = attitudes.len();
+    let [attitudes, spins] = [attitudes.into_flattened(), spins.into_flattened()];
     Ok([
-        table(attitudes.into_flattened(), 4)?,
-        table(spins.into_flattened(), 3)?,
+        attitudes.into_pyarray(py).reshape([count, 4])?,
+        spins.into_pyarray(py).reshape([count, 3])?,
     ])
 }
 
@@ -299,13 +293,13 @@ fn faces(name: &str, given: Vec<Option<Given<'_>>>) -> PyResult<Polyhedron> {
     let BodyKind::Rigid(kind) = entry(name)? else {
         return Ok((vec![], vec![]));
     };
-    let point = |&Vector { x, y, z }: &Vector| [x, y, z];
-    Ok(
-        match (kind.make)(&arguments(&given)?).map_err(python_error)? {
-            Form::Faces(points, triangles) => (points.iter().map(point).collect(), triangles),
-            _ => (vec![], vec![]),
-        },
-    )
+    let form = (kind.make)(&arguments(&given)?).map_err(python_error)?;
+    Ok(match form {
+        Form::Faces(points, triangles) => {
+            (points.into_iter().map(Vector::parts).collect(), triangles)
+        }
+        _ => (vec![], vec![]),
+    })
 }
 
 /// True if a height of the centre of mass is at least the lowest at which no part is below the plane, up to rounding.

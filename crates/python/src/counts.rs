@@ -3,11 +3,10 @@
 use crate::distribution::{Mixture, nodes, owned};
 use crate::errors::python_error;
 use crate::{resources, watch};
-use numpy::ndarray::{ArrayD, IxDyn};
-use numpy::{Element, IntoPyArray, PyArrayDyn, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use restitution_core::distribution::{COARSE, FINE, Impacts};
+use restitution_core::distribution::{COARSE, Impacts};
 use restitution_core::{Monitor, collected};
 
 type Array<'py> = PyReadonlyArray1<'py, f64>;
@@ -24,17 +23,6 @@ fn impacts<'a>(
     let condition = condition.map(|rows| rows.as_slice()).transpose()?;
     let (v, e) = (velocity.as_slice()?, restitution.as_slice()?);
     Impacts::new(v, e, condition, columns, first).map_err(python_error)
-}
-
-fn shaped<'py, T: Element>(
-    py: Python<'py>,
-    shape: &[usize],
-    values: Vec<T>,
-) -> Bound<'py, PyArrayDyn<T>> {
-    let values = ArrayD::from_shape_vec(IxDyn(shape), values);
-    values
-        .expect("the core fills the whole table")
-        .into_pyarray(py)
 }
 
 /// Counts of the impacts at the components of a distribution.
@@ -93,12 +81,14 @@ impl Counter {
         let bins = counts.count.len() / batches;
         let speeds = counts.seen.len() / 2;
         let table = PyDict::new(py);
-        table.set_item("count", shaped(py, &[batches, bins], counts.count))?;
-        let powers = shaped(py, &[3, batches, components], counts.powers);
-        table.set_item("powers", powers)?;
+        let count = counts.count.into_pyarray(py).reshape([batches, bins])?;
+        table.set_item("count", count)?;
+        let powers = counts.powers.into_pyarray(py);
+        table.set_item("powers", powers.reshape([3, batches, components])?)?;
         table.set_item("lowest", counts.lowest.into_pyarray(py))?;
         table.set_item("highest", counts.highest.into_pyarray(py))?;
-        table.set_item("seen", shaped(py, &[2, speeds], counts.seen))?;
+        let seen = counts.seen.into_pyarray(py).reshape([2, speeds])?;
+        table.set_item("seen", seen)?;
         Ok(table)
     }
 }
@@ -142,22 +132,18 @@ impl Levels {
     }
 
     /// The counts of all impacts in an interval, over levels.
-    fn fine<'py>(&self, py: Python<'py>, interval: usize) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
+    fn fine<'py>(&self, py: Python<'py>, interval: usize) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let counts = self.levels.fine(interval).map_err(python_error)?;
         let counts = counts.into_iter().map(|count| count as i64);
         let counts = collected("levels", counts).map_err(python_error)?;
-        Ok(shaped(py, &[FINE], counts))
+        Ok(counts.into_pyarray(py))
     }
 
     /// The counts of the batches in an interval, over batches and levels, as numbers that are resampled.
-    fn coarse<'py>(
-        &self,
-        py: Python<'py>,
-        interval: usize,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn coarse<'py>(&self, py: Python<'py>, interval: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let counts = self.levels.coarse(interval).map_err(python_error)?;
-        let counts = counts.map(|count| count as f64).collect();
-        Ok(shaped(py, &[self.batches, COARSE], counts))
+        let counts: Vec<_> = counts.map(|count| count as f64).collect();
+        counts.into_pyarray(py).reshape([self.batches, COARSE])
     }
 }
 

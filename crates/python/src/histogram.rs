@@ -1,8 +1,8 @@
 //! Counts and sums of a run or a part of it; those of all parts merge to the same bits as the whole run.
 
 use crate::errors::python_error;
-use crate::{Parameters, range, resources, set, watch};
-use numpy::{Element, IntoPyArray, PyArray1, PyReadonlyArray1};
+use crate::{Parameters, range, resources, watch};
+use numpy::{Element, IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -109,20 +109,16 @@ fn table(py: Python<'_>, counts: core::Histogram) -> PyResult<Bound<'_, PyDict>>
     let number = rows.gains.len();
     let table = Measured::of(&rows).map_err(python_error)?.table(py)?;
     for (name, grid) in [("count", restitution), ("fraction_count", fraction)] {
-        let shape = (number, grid.columns());
-        set(py, &table, name, shape, grid.into_counts())?;
+        let shape = [number, grid.columns()];
+        table.set_item(name, grid.into_counts().into_pyarray(py).reshape(shape)?)?;
     }
     let created = rows.gains.iter().map(|row| row.count as i64);
     table.set_item("energy_created", column(py, created)?)?;
     let largest = rows.gains.iter().map(|row| row.largest);
     table.set_item("largest_energy_ratio", column(py, largest)?)?;
     table.set_item("pulls", rows.pulls)?;
-    let stops = rows
-        .stops
-        .iter()
-        .map(|&count| count as i64)
-        .collect::<Vec<_>>();
-    table.set_item("stops", stops.into_pyarray(py))?;
+    let stops = rows.stops.iter().map(|&count| count as i64);
+    table.set_item("stops", column(py, stops)?)?;
     Ok(table)
 }
 

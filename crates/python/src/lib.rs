@@ -15,8 +15,6 @@ mod watch;
 
 use bodies::Dropped;
 use errors::python_error;
-use numpy::ndarray::Array2;
-use numpy::{Element, IntoPyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use restitution_core::statistics::{CREATES_ENERGY, PULLS, Sums};
@@ -95,18 +93,6 @@ fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     info.set_item("simd_available", here)?;
     info.set_item("threads", restitution_core::default_threads())?;
     Ok(info)
-}
-
-/// Passes a row-major table to NumPy without a copy.
-fn set<T: Element>(
-    py: Python<'_>,
-    table: &Bound<'_, PyDict>,
-    name: &str,
-    shape: (usize, usize),
-    values: Vec<T>,
-) -> PyResult<()> {
-    let values = Array2::from_shape_vec(shape, values).expect("the core fills the whole table");
-    table.set_item(name, values.into_pyarray(py))
 }
 
 /// Sine and cosine as the engine computes them.

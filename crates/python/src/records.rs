@@ -4,7 +4,7 @@ use crate::bodies::Dropped;
 use crate::errors::python_error;
 use crate::laws::Law;
 use crate::{Parameters, range, resources, watch};
-use numpy::{Element, IntoPyArray, PyArray1, PyArrayMethods};
+use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PySlice, PyTuple};
 use restitution_core::{Columns, PER_IMPACT, Records, Values, Variable};
@@ -130,22 +130,12 @@ fn variable<'py>(
         attributes.set_item("flag_meanings", about.meanings.join(" "))?;
     }
     let values = match values {
-        Values::Numbers(values) => shaped(py, values, shape)?,
-        Values::Flags(values) => shaped(py, values, shape)?,
-        Values::Parts(values) => shaped(py, values, shape)?,
-        Values::Counts(values) => shaped(py, values, shape)?,
+        Values::Numbers(values) => values.into_pyarray(py).reshape(shape)?.into_any(),
+        Values::Flags(values) => values.into_pyarray(py).reshape(shape)?.into_any(),
+        Values::Parts(values) => values.into_pyarray(py).reshape(shape)?.into_any(),
+        Values::Counts(values) => values.into_pyarray(py).reshape(shape)?.into_any(),
     };
     Ok((PyTuple::new(py, names)?, values, attributes))
-}
-
-/// Passes a row-major table to NumPy without a copy.
-fn shaped<T: Element>(
-    py: Python<'_>,
-    values: Vec<T>,
-    shape: Vec<usize>,
-) -> PyResult<Bound<'_, PyAny>> {
-    let flat: Bound<'_, PyArray1<T>> = values.into_pyarray(py);
-    Ok(flat.reshape(shape)?.into_any())
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
