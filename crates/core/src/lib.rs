@@ -54,8 +54,8 @@ pub mod statistics;
 mod threads;
 
 pub use drop::{
-    About, COLLAPSE_RUN, Height, Limits, Orientation, PER_IMPACT, PER_PARTICLE, Run, Scales, Spin,
-    StopReason,
+    About, COLLAPSE_RUN, Height, Limits, Orientation, PER_IMPACT, PER_PARTICLE, Records, Run,
+    Scales, Spin, StopReason,
 };
 #[cfg(feature = "one-lane")]
 pub use drop::{
@@ -66,7 +66,7 @@ pub use law::*;
 pub use math::{Quaternion, Symmetric, Vector};
 pub use memory::{collected, copied};
 pub use motion::{Rotation, SpinBounds, State};
-pub use record::{Columns, Element, Elements, Records, Values, Variable, When};
+pub use record::{Columns, Element, Elements, Values, Variable, When};
 pub use shape::*;
 pub use simd::{Level, elementary};
 pub use simulate::simulate_series;

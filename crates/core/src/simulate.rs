@@ -1,11 +1,9 @@
 //! All particles of a run, on all cores. Particles do not interact, so that the result does not depend on the schedule.
 
 use crate::Error;
-use crate::drop::{BLOCK, JoinedRuns, Plan, Run, even, share};
-use crate::record::{Columns, Process, Records, Source, Table};
-use crate::statistics::{
-    Bins, By, CountSink, Histogram, HistogramSink, MomentSink, Rows, UNSPOILT,
-};
+use crate::drop::{BLOCK, JoinedRuns, Records, Run, Table, bounce_block, even, share};
+use crate::record::Columns;
+use crate::statistics::{Bins, By, Histogram, HistogramSink, Rows, UNSPOILT};
 use crate::threads::{Monitor, Resources};
 use std::ops::Range;
 use std::sync::Mutex;
@@ -44,9 +42,9 @@ impl Run<'_> {
         resources: Resources,
         monitor: &Monitor,
     ) -> Result<Records, Error> {
-        let plan = Plan::new(self)?;
-        plan.check_part(&part)?;
-        recorded(&plan, part, |_| BLOCK, columns, resources, monitor)
+        let runs = JoinedRuns::of(self)?;
+        runs.plan().check_part(&part)?;
+        recorded(&runs, part, |_| BLOCK, columns, resources, monitor)
     }
 
     /// Simulates every particle and keeps only the statistics of the impacts, in memory that does not grow with the run.
@@ -82,8 +80,10 @@ impl Run<'_> {
         monitor: &Monitor,
         mut report: impl FnMut(&Rows) -> Result<(), Error>,
     ) -> Result<Histogram, Error> {
-        let plan = Plan::new(self)?;
-        parts.iter().try_for_each(|part| plan.check_part(part))?;
+        let runs = JoinedRuns::of(self)?;
+        parts
+            .iter()
+            .try_for_each(|part| runs.plan().check_part(part))?;
         bins.check()?;
         if let By::Number(rows) = bins.by {
             let allowed = "at most the number of rows";
@@ -92,7 +92,7 @@ impl Run<'_> {
         let mut total = Histogram::new(bins, self.origin())?;
         for part in parts {
             let shared = Mutex::new(total);
-            let rows = counted(&plan, part.clone(), bins, resources, monitor, &shared)?;
+            let rows = counted(&runs, part.clone(), bins, resources, monitor, &shared)?;
             total = shared.into_inner().expect(UNSPOILT);
             report(&rows)?;
             total.rows.merge(&rows);
@@ -104,34 +104,23 @@ impl Run<'_> {
     }
 }
 
-/// Counts the events of some rows in the grids of a histogram, and returns what else is summed of them.
-fn counted<S: Source>(
-    source: &S,
+/// Counts the impacts of some particles in the grids of a histogram, and returns what else is summed of them.
+fn counted(
+    runs: &JoinedRuns<'_>,
     part: Range<usize>,
     bins: &Bins,
     resources: Resources,
     monitor: &Monitor,
     shared: &Mutex<Histogram>,
 ) -> Result<Rows, Error> {
-    let even = bins.are_even();
-    let units = S::Of::units(source.plan());
-    let reasons = S::Of::REASONS.len();
-    let found = match &bins.fraction {
-        Some(fractions) if even => each(source, part, resources, monitor, || {
-            MomentSink::<true>::new(bins, fractions, units, reasons, shared)
-        }),
-        Some(fractions) => each(source, part, resources, monitor, || {
-            MomentSink::<false>::new(bins, fractions, units, reasons, shared)
-        }),
-        None if even => each(source, part, resources, monitor, || {
-            CountSink::<true>::new(bins, units, reasons, shared)
-        }),
-        None => each(source, part, resources, monitor, || {
-            CountSink::<false>::new(bins, units, reasons, shared)
-        }),
+    let count = match (bins.are_even(), bins.fraction.is_some()) {
+        (true, true) => each::<true, true>,
+        (true, false) => each::<true, false>,
+        (false, true) => each::<false, true>,
+        (false, false) => each::<false, false>,
     };
-    let mut sum = Rows::new(bins, units.1, reasons)?;
-    for rows in found? {
+    let mut sum = Rows::new(bins, runs.plan().run.origin())?;
+    for rows in count(runs, part, bins, resources, monitor, shared)? {
         sum.merge(&rows?);
     }
     Ok(sum)
@@ -139,24 +128,27 @@ fn counted<S: Source>(
 
 /// The sums of every thread. They do not depend on which thread takes which block, because integer sums do not depend on the
 /// order.
-fn each<S: Source, T: HistogramSink<S::Of>>(
-    source: &S,
+fn each<const EVEN: bool, const MOMENTS: bool>(
+    runs: &JoinedRuns<'_>,
     part: Range<usize>,
+    bins: &Bins,
     resources: Resources,
     monitor: &Monitor,
-    counter: impl Fn() -> Result<T, Error> + Sync,
+    shared: &Mutex<Histogram>,
 ) -> Result<Vec<Result<Rows, Error>>, Error> {
+    let plan = runs.plan();
+    let units = (plan.scales.speed, plan.run.origin());
     let next = AtomicUsize::new(part.start);
     resources.each_thread(part.len().div_ceil(BLOCK), |threads| {
-        let mut counter = counter()?;
+        let mut counter = HistogramSink::<EVEN, MOMENTS>::new(bins, units, shared)?;
         while !monitor.is_cancelled() {
             let next = next.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |first| {
                 let left = part.end - first;
                 (left > 0).then(|| first + share(left, threads))
             });
             let Ok(first) = next else { break };
-            let rows = first..first + share(part.end - first, threads);
-            S::Of::simulate(source, rows, resources.level, monitor, &mut counter)?;
+            let particles = first..first + share(part.end - first, threads);
+            bounce_block(runs, particles, resources.level, monitor, &mut counter)?;
         }
         Ok(counter.finish())
     })
@@ -181,22 +173,22 @@ pub fn simulate_series(
 }
 
 /// The impacts of a range of particles, which threads take in blocks of as many as `block` says for their number.
-fn recorded<S: Source>(
-    source: &S,
+fn recorded(
+    runs: &JoinedRuns<'_>,
     part: Range<usize>,
     block: impl Fn(usize) -> usize + Sync,
     columns: &Columns,
     resources: Resources,
     monitor: &Monitor,
 ) -> Result<Records, Error> {
-    let impacts = S::Of::most(source.plan());
+    let impacts = runs.plan().run.impacts;
     Error::unless(
         part.len().checked_mul(impacts).is_some(),
         "particles",
         part.len(),
         "such that particles × impacts can be counted",
     )?;
-    let mut records = Records::new::<S::Of>(source.plan(), part.len(), columns)?;
+    let mut records = Records::new(runs.plan(), part.len(), columns)?;
     let started = AtomicUsize::new(part.start);
     let rows = Mutex::new(records.block());
     // Free threads take blocks in order, so that the particles begun before a cancellation are contiguous.
@@ -212,8 +204,8 @@ fn recorded<S: Source>(
                 break;
             }
             let particles = first..first + count;
-            let mut table = Table::new(block, source, first);
-            S::Of::simulate(source, particles, resources.level, monitor, &mut table)?;
+            let mut table = Table::new(block, runs, first);
+            bounce_block(runs, particles, resources.level, monitor, &mut table)?;
             table.finish(monitor);
         }
         Ok(())

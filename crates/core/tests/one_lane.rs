@@ -9,12 +9,11 @@ use crate::drop::lanes::bounce::bounce;
 use crate::drop::lanes::collision::{Collide, ContactPoint, Planar, Spatial};
 use crate::drop::lanes::group::Release;
 use crate::drop::lanes::interleaved::Idle;
-use crate::drop::{Bounces, Limits, StopReason};
+use crate::drop::{Impact, ImpactSink, Limits, Meanwhile, Pose, StopReason};
 use crate::law::{Law, Respond, Response};
 use crate::math::Vector;
 use crate::motion::{SpatialState, State, SymmetricState};
 use crate::random::of_impact;
-use crate::record::{Event, Meanwhile, Sink};
 use crate::shape::{Body, Hull, Sphere, with_hull};
 use crate::simd::one;
 use pulp::{Scalar, Simd};
@@ -190,29 +189,18 @@ struct Reporter<'a> {
     ended: StopReason,
 }
 
-impl Meanwhile for Reporter<'_> {
-    const INTERLEAVED: bool = false;
+impl Meanwhile for Reporter<'_> {}
 
-    fn meanwhile(&mut self, _: usize) {}
-}
-
-impl Sink<Bounces> for Reporter<'_> {
-    fn begin(&mut self) {}
-
-    fn event<S: Simd, E: Event<S, K, Of = Bounces>, const K: usize>(
-        &mut self,
-        _: usize,
-        event: &E,
-    ) {
-        let (true, Some((time, part, [before, after]))) = (event.active().any(), event.states())
-        else {
+impl ImpactSink for Reporter<'_> {
+    fn impact<S: Simd, P: Pose<S>>(&mut self, _: usize, impact: &Impact<S, P>) {
+        let (true, Some([before, after])) = (impact.active.any(), impact.pose.symmetric()) else {
             return;
         };
         self.go_on.set((self.record)(&SingleImpact {
-            time: time.as_slice()[0],
+            time: impact.time.as_slice()[0],
             before: state(before),
             after: state(after),
-            sphere: Sphere::BOTH[part.as_slice()[0] as usize - 1],
+            sphere: Sphere::BOTH[impact.part.as_slice()[0] as usize - 1],
         }));
     }
 

@@ -4,11 +4,10 @@ use super::lanes::{
     Advance, Dimension, GROUPS, General, ImpactSink, Inlined, Lost, Planar, Release, Spatial,
     bounce,
 };
-use super::{Bounces, rigid};
+use super::{JoinedRuns, rigid};
 use crate::Error;
 use crate::motion::State;
 use crate::random::of_impact;
-use crate::record::Source;
 use crate::shape::{AnyBody, Body, Rigid, Surface};
 use crate::simd::Level;
 use crate::threads::Monitor;
@@ -40,7 +39,7 @@ pub(crate) fn even(particles: usize, threads: usize) -> usize {
 
 /// Simulates a range of particles and hands their impacts to `sink`.
 pub(crate) fn bounce_block(
-    source: &impl Source<Of = Bounces>,
+    runs: &JoinedRuns<'_>,
     particles: Range<usize>,
     level: Level,
     monitor: &Monitor,
@@ -48,12 +47,12 @@ pub(crate) fn bounce_block(
 ) -> Result<(), Error> {
     let count = particles.len() as u64;
     // A law of one's own may take long: the fewer contacts it is asked about at a time, the sooner a run that is cancelled ends.
-    let level = match source.plan().law.custom {
+    let level = match runs.plan().law.custom {
         Some(_) => Level::Scalar,
         None => level,
     };
     let ended = level.run(Block {
-        source,
+        runs,
         particles,
         monitor,
         sink,
@@ -65,19 +64,19 @@ pub(crate) fn bounce_block(
 }
 
 /// The particles of a block, compiled for each SIMD level.
-struct Block<'a, R, T> {
-    source: &'a R,
+struct Block<'a, T> {
+    runs: &'a JoinedRuns<'a>,
     particles: Range<usize>,
     monitor: &'a Monitor,
     sink: &'a mut T,
 }
 
-impl<R: Source<Of = Bounces>, T: ImpactSink> WithSimd for Block<'_, R, T> {
+impl<T: ImpactSink> WithSimd for Block<'_, T> {
     type Output = Result<(), Error>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let plan = self.source.plan();
+        let plan = self.runs.plan();
         let body = match &plan.run.body {
             AnyBody::Rigid(body) => return self.rigid(simd, body),
             AnyBody::Revolution(solid) => &solid.scaled,
@@ -86,7 +85,13 @@ impl<R: Source<Of = Bounces>, T: ImpactSink> WithSimd for Block<'_, R, T> {
         // The paper's runs have a bounce loop of their own where they are not held up by memory.
         match (&body.hull, plan.at_rest, &plan.law.steady()) {
             (Surface::EqualBalls(hull), true, Some(law)) if T::INTERLEAVED => {
-                self.run::<S, Planar>(simd, body, &Inlined::new(body, hull, law, slope))
+                let cycle = Inlined {
+                    body,
+                    hull,
+                    law,
+                    slope,
+                };
+                self.run::<S, Planar>(simd, body, &cycle)
             }
             (_, true, _) => self.run::<S, Planar>(simd, body, &General { body, law, slope }),
             (_, false, _) => self.run::<S, Spatial>(simd, body, &General { body, law, slope }),
@@ -94,7 +99,7 @@ impl<R: Source<Of = Bounces>, T: ImpactSink> WithSimd for Block<'_, R, T> {
     }
 }
 
-impl<R: Source<Of = Bounces>, T: ImpactSink> Block<'_, R, T> {
+impl<T: ImpactSink> Block<'_, T> {
     #[inline(always)]
     fn run<S: Simd, K: Dimension>(
         self,
@@ -103,83 +108,78 @@ impl<R: Source<Of = Bounces>, T: ImpactSink> Block<'_, R, T> {
         cycle: &impl Advance<S, K>,
     ) -> Result<(), Error> {
         let Self {
-            source,
+            runs,
             particles,
             monitor,
             sink,
         } = self;
         bounce::<S, K, _, GROUPS>(
             simd,
-            (body, source.plan().limits()),
+            (body, runs.plan().limits()),
             cycle,
-            (&Released { source, body }, particles),
+            (&Released { runs, body }, particles),
             sink,
             || !monitor.is_cancelled(),
         )
-        .map_err(|lost| error(source, lost))
+        .map_err(|lost| error(runs, lost))
     }
 
     /// Bodies of any shape, one after the other.
     #[inline(always)]
     fn rigid<S: Simd>(self, simd: S, body: &Rigid) -> Result<(), Error> {
         let Self {
-            source,
+            runs,
             particles,
             monitor,
             sink,
         } = self;
-        let plan = source.plan();
-        let bouncing = rigid::Bouncing {
-            body,
-            law: &plan.law,
-            slope: plan.slope,
-            limits: plan.limits(),
-        };
+        let plan = runs.plan();
+        let bouncing = rigid::Bouncing { plan, body };
         sink.begin();
         for particle in particles {
             if monitor.is_cancelled() {
                 break;
             }
-            let (plan, number) = source.origin(particle);
+            let (plan, number) = runs.origin(particle);
             let start = plan.rigid(body, number);
             let chance = |impact| of_impact(plan.run.seed, number as u64, impact);
             bouncing
                 .bounce(simd, (particle, start), chance, sink, || {
                     !monitor.is_cancelled()
                 })
-                .map_err(|lost| error(source, lost))?;
+                .map_err(|lost| error(runs, lost))?;
         }
         Ok(())
     }
 }
 
 /// The start of the particles of a body of revolution.
-struct Released<'a, R> {
-    source: &'a R,
+struct Released<'a> {
+    runs: &'a JoinedRuns<'a>,
     body: &'a Body,
 }
 
-impl<R: Source<Of = Bounces>> Release for Released<'_, R> {
+impl Release for Released<'_> {
     #[inline(always)]
     fn start(&self, particle: usize) -> State {
-        let (plan, number) = self.source.origin(particle);
+        let (plan, number) = self.runs.origin(particle);
         plan.state(self.body, number)
     }
 
     fn chance(&self, particle: usize, impact: usize) -> f64 {
-        let (plan, number) = self.source.origin(particle);
+        let (plan, number) = self.runs.origin(particle);
         of_impact(plan.run.seed, number as u64, impact as u64)
     }
 }
 
 /// The error that names the particle, its seed and the flight or the impact in question.
-fn error(source: &impl Source<Of = Bounces>, lost: Lost) -> Error {
+fn error(runs: &JoinedRuns<'_>, lost: Lost) -> Error {
     let Lost {
         particle,
         impacts,
         fault,
     } = lost;
-    let (plan, number) = source.origin(particle);
+    let (plan, number) = runs.origin(particle);
     let (particle, seed) = (number as u64, plan.run.seed);
     match fault {
         None => Error::Numerical {

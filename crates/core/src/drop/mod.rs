@@ -9,19 +9,22 @@ mod rigid;
 mod scales;
 mod series;
 mod stop;
+mod table;
 
 pub(crate) use block::{BLOCK, bounce_block, even, share};
 #[cfg(feature = "one-lane")]
 pub use lanes::one_lane::{
     FlightEnd, FlightStart, NoConvergence, SingleImpact, collide, first_contact, trajectory,
 };
-pub(crate) use lanes::{Bounces, Impact, PLACES, Pose, of_group};
+pub(crate) use lanes::{Impact, ImpactSink, Meanwhile, PLACES, Pose, of_group};
 pub(crate) use plan::Plan;
 pub use recorded::{PER_IMPACT, PER_PARTICLE};
 pub use release::{About, Height, Orientation, Spin};
 pub use scales::Scales;
 pub(crate) use series::JoinedRuns;
 pub use stop::{COLLAPSE_RUN, Limits, StopReason};
+pub use table::Records;
+pub(crate) use table::Table;
 
 use crate::law::{Law, TangentialRestitution};
 use crate::math::Vector;

@@ -1,62 +1,11 @@
 //! The recorded variables of an impact and of a particle, in SI units.
 
-use super::{Bounces, Height, Impact, Plan, Pose, StopReason, bounce_block};
-use crate::Error;
+use super::{Height, Impact, Plan, Pose, StopReason};
 use crate::law::{Law, Normal};
-use crate::math::Quaternion;
-use crate::record::{Columns, Event, Process, Sink, Source, Variable, When, variables};
+use crate::record::{Columns, InLanes, Slices, Stored, Variable, When};
 use crate::shape::AnyBody;
 use crate::simd::elementary::{angle, angle_in_lanes};
-use crate::simd::{Level, Mask, Pack};
-use crate::threads::Monitor;
 use pulp::Simd;
-use std::ops::Range;
-
-impl Process for Bounces {
-    type Plan<'a> = Plan<'a>;
-    type Row = AtRelease;
-    type Reason = StopReason;
-    const EVENTS: &'static [Variable] = PER_IMPACT;
-    const ROWS: &'static [Variable] = PER_PARTICLE;
-    const REASONS: &'static [&'static str] = &StopReason::NAMES;
-    const INTERRUPTED: StopReason = StopReason::Interrupted;
-
-    fn most(plan: &Plan<'_>) -> usize {
-        plan.run.impacts
-    }
-
-    fn has(plan: &Plan<'_>, about: &Variable) -> bool {
-        let axis = matches!(plan.run.body, AnyBody::Revolution(_));
-        match about.when {
-            When::HeightVaries => matches!(plan.run.release_height, Height::Random { .. }),
-            When::InSpace => !plan.at_rest,
-            When::InSpaceOfAxis => !plan.at_rest && axis,
-            when => is_usual(when, axis),
-        }
-    }
-
-    fn row(number: usize) -> AtRelease {
-        AtRelease(number)
-    }
-
-    fn number(reason: StopReason) -> usize {
-        reason as usize
-    }
-
-    fn units(plan: &Plan<'_>) -> (f64, f64) {
-        (plan.scales.speed, plan.run.origin())
-    }
-
-    fn simulate(
-        source: &impl Source<Of = Self>,
-        rows: Range<usize>,
-        level: Level,
-        monitor: &Monitor,
-        sink: &mut impl Sink<Self>,
-    ) -> Result<(), Error> {
-        bounce_block(source, rows, level, monitor, sink)
-    }
-}
 
 /// Returns whether a variable is recorded of every body with, or without, an axis.
 fn is_usual(when: When, axis: bool) -> bool {
@@ -79,57 +28,70 @@ impl Columns {
             when => is_usual(when, axis),
         })
     }
-}
 
-impl<S: Simd, P: Pose<S, K>, const K: usize> Event<S, K> for Impact<S, P, K> {
-    #[inline(always)]
-    fn place(&self) -> (Pack<S, K>, Pack<S, K>) {
-        (self.particle, self.number)
-    }
-
-    #[inline(always)]
-    fn active(&self) -> Mask<S, K> {
-        self.active
-    }
-
-    #[inline(always)]
-    fn velocity(&self) -> Pack<S, K> {
-        self.fall
-    }
-
-    #[inline(always)]
-    fn restitution(&self) -> Pack<S, K> {
-        self.rise / self.fall // (1)
-    }
-
-    #[inline(always)]
-    fn rotational_fraction(&self) -> Pack<S, K> {
-        self.rotation / self.energy_before // (12)
-    }
-
-    #[inline(always)]
-    fn energies(&self) -> [Pack<S, K>; 2] {
-        [self.energy_before, self.energy_after]
-    }
-
-    #[cfg(feature = "one-lane")]
-    fn states(
-        &self,
-    ) -> Option<(
-        Pack<S, K>,
-        Pack<S, K>,
-        [&crate::motion::SpatialState<S, K>; 2],
-    )> {
-        Some((self.time, self.part, self.pose.symmetric()?))
+    /// The variables of a particle that are recorded in a run.
+    pub(super) fn of_particles(plan: &Plan<'_>) -> Self {
+        let axis = matches!(plan.run.body, AnyBody::Revolution(_));
+        Self::chosen(PER_PARTICLE, |about| match about.when {
+            When::HeightVaries => matches!(plan.run.release_height, Height::Random { .. }),
+            When::InSpace => !plan.at_rest,
+            When::InSpaceOfAxis => !plan.at_rest && axis,
+            when => is_usual(when, axis),
+        })
     }
 }
 
 /// A particle of this number, at its release.
-pub(crate) struct AtRelease(usize);
+pub(super) struct AtRelease(pub usize);
+
+/// Tabulates the variables of an impact or a particle. A line is `name: type { metadata } = |it, plan| value`; choice, storage, blanks, the
+/// binding and the Dataset follow from it.
+macro_rules! variables {
+    (
+        $(#[$doc:meta])* $all:ident: [$($generic:tt)*] $described:ty;
+        $($name:ident: $kind:ty { $($about:tt)* } = |$it:pat_param, $plan:pat_param| $value:expr;)*
+    ) => {
+        $(#[$doc])*
+        pub const $all: &[Variable] = &[$(
+            Variable {
+                key: stringify!($name),
+                components: <$kind as Stored>::COMPONENTS,
+                kind: <$kind as Stored>::KIND,
+                ..variables!(@named $name $($about)*)
+            }
+        ),*];
+
+        impl<$($generic)*> $described {
+            /// Writes the chosen variables into cells, pairs of a lane and a cell.
+            #[inline(always)]
+            pub(super) fn write(
+                &self,
+                plan: &Plan<'_>,
+                columns: &mut [Option<Slices<'_>>],
+                cells: &[(usize, usize)],
+            ) {
+                let mut columns = columns.iter_mut();
+                $(if let Some(Some(column)) = columns.next() {
+                    let ($it, $plan) = (self, plan);
+                    let values = $value;
+                    <$kind as Stored>::put(column, cells, |lane| {
+                        InLanes::<$kind>::lane(&values, lane)
+                    });
+                })*
+            }
+        }
+    };
+    (@named $name:ident name: $given:expr, $($about:tt)*) => {
+        Variable { name: $given, $($about)*, ..Variable::PLAIN }
+    };
+    (@named $name:ident $($about:tt)*) => {
+        Variable { name: stringify!($name), $($about)*, ..Variable::PLAIN }
+    };
+}
 
 variables! {
     /// The variables of a particle; [`Variable::when`] says in which runs each is recorded.
-    PER_PARTICLE: Bounces, [] AtRelease;
+    PER_PARTICLE: [] AtRelease;
 
     impacts: i64 { text: "number of impacts" } = |_, _| 0_i64;
 
@@ -153,8 +115,7 @@ variables! {
         symbol: Some("q"),
         when: When::HasNoAxis
     } = |particle, plan| {
-        let Quaternion { w, x, y, z } = plan.attitude(particle.0);
-        [w, x, y, z]
+        plan.attitude(particle.0).parts()
     };
 
     release_height: f64 {
@@ -180,13 +141,13 @@ variables! {
             AnyBody::Revolution(solid) => plan.spinning(&solid.scaled, particle.0).1,
             AnyBody::Rigid(body) => plan.spin(body, particle.0),
         };
-        [spin.x, spin.y, spin.z]
+        spin.parts()
     };
 }
 
 variables! {
     /// The variables of an impact.
-    PER_IMPACT: Bounces, [S: Simd, P: Pose<S, K>, const K: usize] Impact<S, P, K>;
+    PER_IMPACT: [S: Simd, P: Pose<S>] Impact<S, P>;
 
     time: f64 { text: "time since release", unit: Some("s") } = |impact, plan| impact.time * plan.scales.time;
 

@@ -1,12 +1,12 @@
 //! The bounce loop for bodies of any shape, one particle at a time.
 
 use super::lanes::{Impact, ImpactSink, Lost, Pose};
-use super::plan::RigidState;
-use super::stop::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
+use super::plan::{Plan, RigidState};
+use super::stop::{COLLAPSE_RUN, StopReason, UNRESOLVED};
 use crate::Fault;
 use crate::contact::{Departure, Fall, FirstContact, NoContact};
-use crate::law::{Compliance, Law, Respond, Rule};
-use crate::math::{Quaternion, Symmetric, Vector, Vectors};
+use crate::law::{Compliance, Respond, Rule};
+use crate::math::{Symmetric, Vector, Vectors};
 use crate::shape::{Rigid, up};
 use crate::simd::{Mask, Pack, one};
 use pulp::{Scalar, Simd, WithSimd};
@@ -16,11 +16,8 @@ const GRAVITY: f64 = 1.0;
 
 /// A body, its law and the plane that it bounces on.
 pub(super) struct Bouncing<'a> {
+    pub plan: &'a Plan<'a>,
     pub body: &'a Rigid,
-    pub law: &'a Law<'a>,
-    /// tan α.
-    pub slope: f64,
-    pub limits: Limits,
 }
 
 /// A flight and the impact that ends it, compiled for each SIMD level.
@@ -84,6 +81,7 @@ impl Bouncing<'_> {
             impacts,
             fault,
         };
+        let limits = self.plan.limits();
         let (mut state, mut departure) = (start, None);
         let (mut clock, mut impacts, mut unresolved) = (0.0, 0, 0);
         let reason = loop {
@@ -94,7 +92,7 @@ impl Bouncing<'_> {
                 bouncing: self,
                 start: &state,
                 departure,
-                chance: self.law.scatters().then(|| chance(impacts as u64)),
+                chance: self.plan.law.scatters().then(|| chance(impacts as u64)),
             };
             let (contact, bounce) = match simd.vectorize(flight) {
                 Ok(impact) => impact,
@@ -111,14 +109,14 @@ impl Bouncing<'_> {
             } else {
                 0
             };
-            let slowest = self.limits.minimum_speed;
+            let slowest = limits.minimum_speed;
             if slowest > 0.0 && 2.0 * self.energies(&state).1 < slowest * slowest {
                 break StopReason::SpeedBelowThreshold;
-            } else if self.level(&state) < self.limits.settled {
+            } else if self.level(&state) < limits.settled {
                 break StopReason::Settled;
             } else if unresolved == COLLAPSE_RUN {
                 break StopReason::Collapse;
-            } else if impacts == self.limits.impacts {
+            } else if impacts == limits.impacts {
                 break StopReason::ImpactsReached;
             }
         };
@@ -148,7 +146,7 @@ impl Bouncing<'_> {
         })?;
         let ((attitude, spin), time) = (touch.rotation, touch.time);
         let normal = up(attitude);
-        let pull = Vector::new(self.slope, 0.0, -1.0) * GRAVITY;
+        let pull = Vector::new(self.plan.slope, 0.0, -1.0) * GRAVITY;
         let arm = self
             .body
             .surface
@@ -182,7 +180,7 @@ impl Bouncing<'_> {
         let compliance =
             Compliance::of_body(1.0, &Symmetric::turned(inverse, attitude), arm_in_space);
         let at_contact = velocity + attitude.rotate(spin.cross(arm)); // (7)
-        let answer = self.law.answer_drawn(&compliance, at_contact, chance);
+        let answer = self.plan.law.answer_drawn(&compliance, at_contact, chance);
         let answer = answer.map_err(NoImpact::Fault)?;
         if answer.impulse.z.is_nan() {
             return Err(NoImpact::Unconverged);
@@ -212,7 +210,7 @@ impl Bouncing<'_> {
     /// The energy in m g R that can lift the centre of mass: without friction the horizontal motion stays as it is.
     fn level(&self, state: &RigidState) -> f64 {
         let v = state.velocity;
-        let moving = match (self.law.custom, self.law.rule) {
+        let moving = match (self.plan.law.custom, self.plan.law.rule) {
             (None, Rule::Frictionless(_)) => v.z * v.z,
             _ => v.dot(v),
         };
@@ -256,7 +254,7 @@ impl Bouncing<'_> {
             },
             active: Mask::splat(Scalar::new(), true),
         };
-        sink.event(0, &impact);
+        sink.impact(0, &impact);
         sink.settle(0..1);
     }
 }
@@ -270,15 +268,7 @@ struct RigidPose<'a> {
 
 type Lane = Pack<Scalar, 1>;
 
-fn lane(v: Vector) -> Vectors<Scalar, 1> {
-    Vectors {
-        x: one(v.x),
-        y: one(v.y),
-        z: one(v.z),
-    }
-}
-
-impl Pose<Scalar, 1> for RigidPose<'_> {
+impl Pose<Scalar> for RigidPose<'_> {
     fn height(&self) -> Lane {
         one(self.before.height)
     }
@@ -288,24 +278,24 @@ impl Pose<Scalar, 1> for RigidPose<'_> {
     }
 
     fn axis(&self) -> Vectors<Scalar, 1> {
-        lane(Vector::new(f64::NAN, f64::NAN, f64::NAN))
+        Vector::new(f64::NAN, f64::NAN, f64::NAN).in_lane()
     }
 
     fn attitude(&self) -> [Lane; 4] {
-        let Quaternion { w, x, y, z } = self.before.attitude * self.body.axes.inverse();
-        [w, x, y, z].map(one)
+        let attitude = self.before.attitude * self.body.axes.inverse();
+        attitude.parts().map(one)
     }
 
     fn velocities(&self) -> [Vectors<Scalar, 1>; 2] {
-        [self.before, self.after].map(|state| lane(state.velocity))
+        [self.before, self.after].map(|state| state.velocity.in_lane())
     }
 
     fn spin_before(&self) -> Vectors<Scalar, 1> {
-        lane(self.before.attitude.rotate(self.before.spin))
+        self.before.attitude.rotate(self.before.spin).in_lane()
     }
 
     fn spin_after(&self) -> Vectors<Scalar, 1> {
-        lane(self.after.attitude.rotate(self.after.spin))
+        self.after.attitude.rotate(self.after.spin).in_lane()
     }
 }
 
@@ -313,10 +303,11 @@ impl Pose<Scalar, 1> for RigidPose<'_> {
 mod tests {
     use super::*;
     use crate::drop::{About, Orientation, Run, Spin};
+    use crate::math::Quaternion;
     use crate::random::pair;
     use crate::shape::evaluations;
     use crate::shape::{AnyBody, Heights, Inertia, Matter, RigidBall, Roughness};
-    use crate::{Frictionless, Level, Monitor, Resources};
+    use crate::{Frictionless, Law, Level, Monitor, Resources};
 
     /// Of R = 10 mm, as in `benchmarks/bodies.py`.
     fn bodies() -> Vec<(&'static str, Rigid)> {
@@ -462,18 +453,14 @@ mod tests {
                 particles: 50,
                 impacts: 200,
                 release_height: 0.08.into(),
-                gravity: 9.81,
                 orientation: Orientation::Isotropic,
                 spin: Spin::Random {
                     low: 10.0,
                     high: 90.0,
                     about: About::Isotropic,
                 },
-                release_velocity: Vector::default(),
-                incline: 0.0,
-                minimum_speed: 0.0,
-                settled: 0.0,
                 seed: 1,
+                ..Run::default()
             };
             let resources = Resources {
                 threads: 1,

@@ -1,31 +1,19 @@
-//! Several runs side by side: particles that differ only in how they are released.
+//! A run, or several side by side: particles that differ only in how they are released.
 
-use super::{Bounces, Plan, Run};
+use super::{Plan, Run};
 use crate::Error;
-use crate::record::Source;
 use std::ops::Range;
 
-impl Source for Plan<'_> {
-    type Of = Bounces;
+/// Parts of one run or of several, whose particles are numbered from part to part.
+pub(crate) struct JoinedRuns<'a>(Vec<RunPart<'a>>);
 
-    #[inline(always)]
-    fn plan(&self) -> &Plan<'_> {
-        self
-    }
-
-    #[inline(always)]
-    fn origin(&self, particle: usize) -> (&Plan<'_>, usize) {
-        (self, particle)
-    }
-}
-
-/// Parts of several runs, whose particles are numbered from part to part.
-pub(crate) struct JoinedRuns<'a> {
-    plans: Vec<Plan<'a>>,
-    /// Number in its run of the first particle of each part.
-    first: Vec<usize>,
-    /// Number of the particles up to the end of each part.
-    ends: Vec<usize>,
+/// Some particles of a run.
+struct RunPart<'a> {
+    plan: Plan<'a>,
+    /// Number in the run of the first of them.
+    first: usize,
+    /// Their numbers among those of all parts.
+    numbers: Range<usize>,
 }
 
 impl<'a> JoinedRuns<'a> {
@@ -36,41 +24,46 @@ impl<'a> JoinedRuns<'a> {
         let allowed = "one or more that differ in seed, number of particles and release alone";
         let alike = runs.windows(2).all(|two| two[0].0.is_like(&two[1].0));
         Error::unless(!runs.is_empty() && alike, "runs", runs.len(), allowed)?;
-        let mut end = 0;
-        let mut series = Self {
-            plans: Vec::with_capacity(runs.len()),
-            first: Vec::with_capacity(runs.len()),
-            ends: Vec::with_capacity(runs.len()),
-        };
-        for (run, part) in runs {
+        let mut start = 0;
+        let parts = runs.iter().map(|(run, part)| {
             let plan = Plan::new(run)?;
             plan.check_part(part)?;
-            end += part.len();
-            series.plans.push(plan);
-            series.first.push(part.start);
-            series.ends.push(end);
-        }
-        Ok(series)
+            let numbers = start..start + part.len();
+            start = numbers.end;
+            Ok(RunPart {
+                plan,
+                first: part.start,
+                numbers,
+            })
+        });
+        Ok(Self(parts.collect::<Result<_, Error>>()?))
+    }
+
+    /// All particles of a run.
+    pub fn of(run: &'a Run<'a>) -> Result<Self, Error> {
+        Ok(Self(vec![RunPart {
+            plan: Plan::new(run)?,
+            first: 0,
+            numbers: 0..run.particles,
+        }]))
     }
 
     /// Number of all particles.
     pub fn particles(&self) -> usize {
-        self.ends[self.ends.len() - 1]
-    }
-}
-
-impl Source for JoinedRuns<'_> {
-    type Of = Bounces;
-
-    #[inline(always)]
-    fn plan(&self) -> &Plan<'_> {
-        &self.plans[0]
+        self.0[self.0.len() - 1].numbers.end
     }
 
+    /// What is the same for all particles.
     #[inline(always)]
-    fn origin(&self, particle: usize) -> (&Plan<'_>, usize) {
-        let part = self.ends.partition_point(|&end| end <= particle);
-        let before = if part > 0 { self.ends[part - 1] } else { 0 };
-        (&self.plans[part], self.first[part] + (particle - before))
+    pub fn plan(&self) -> &Plan<'a> {
+        &self.0[0].plan
+    }
+
+    /// The run of a particle, and its number there.
+    #[inline(always)]
+    pub fn origin(&self, particle: usize) -> (&Plan<'a>, usize) {
+        let part = self.0.partition_point(|part| part.numbers.end <= particle);
+        let part = &self.0[part];
+        (&part.plan, part.first + (particle - part.numbers.start))
     }
 }

@@ -9,7 +9,7 @@ use pulp::Simd;
 use std::ops::Range;
 
 /// The parameters that the size of a table follows from.
-pub(super) const ROOM: &str = "particles * impacts";
+pub(crate) const ROOM: &str = "particles * impacts";
 
 /// The recorded values of a variable.
 pub type Values = Elements<Vec<f64>, Vec<i8>, Vec<i32>, Vec<i64>>;
@@ -39,18 +39,13 @@ pub(crate) trait Stored: Copy {
     fn put(column: &mut Slices<'_>, cells: &[(usize, usize)], value: impl Fn(usize) -> Self);
 }
 
-/// The value where there was no event.
-trait Blank: Copy {
-    const NONE: Self;
-}
-
 /// Values of a variable in lanes, or one by itself.
 pub(crate) trait InLanes<T> {
     fn lane(&self, lane: usize) -> T;
 }
 
 macro_rules! stored {
-    ($($number:ty: $kind:ident, $none:expr;)*) => {$(
+    ($($number:ty: $kind:ident;)*) => {$(
         impl Stored for $number {
             const KIND: Element = Elements::$kind(());
 
@@ -63,10 +58,6 @@ macro_rules! stored {
             }
         }
 
-        impl Blank for $number {
-            const NONE: Self = $none;
-        }
-
         impl<S: Simd, const K: usize> InLanes<$number> for Pack<S, K> {
             #[inline(always)]
             fn lane(&self, lane: usize) -> $number {
@@ -77,10 +68,10 @@ macro_rules! stored {
 }
 
 stored! {
-    f64: Numbers, f64::NAN;
-    i8: Flags, 0;
-    i32: Parts, 0;
-    i64: Counts, 0;
+    f64: Numbers;
+    i8: Flags;
+    i32: Parts;
+    i64: Counts;
 }
 
 impl<const N: usize> Stored for [f64; N] {
@@ -166,7 +157,7 @@ impl Columns {
 
 /// A table: of every chosen variable a column, with as many cells in each row.
 #[derive(Debug, Clone)]
-pub(super) struct TableColumns {
+pub(crate) struct TableColumns {
     pub all: &'static [Variable],
     pub per_row: usize,
     pub columns: Vec<Option<Values>>,
@@ -242,7 +233,7 @@ impl TableColumns {
 }
 
 /// TableRows of a table.
-pub(super) struct TableRows<'a> {
+pub(crate) struct TableRows<'a> {
     all: &'static [Variable],
     pub per_row: usize,
     pub columns: Vec<Option<Slices<'a>>>,
@@ -264,22 +255,24 @@ impl<'a> TableRows<'a> {
 
     /// Fills these cells of a row with the value for no event.
     pub fn blank(&mut self, row: usize, events: Range<usize>) {
-        fn fill<T: Blank>(cells: &mut [T]) {
-            cells.fill(T::NONE);
-        }
         let start = row * self.per_row;
         for (about, column) in self.all.iter().zip(&mut self.columns) {
             if let Some(column) = column {
                 let [from, to] =
                     [events.start, events.end].map(|event| (start + event) * about.width());
-                each!(column, these => fill(&mut these[from..to]));
+                match column {
+                    Elements::Numbers(cells) => cells[from..to].fill(f64::NAN),
+                    Elements::Flags(cells) => cells[from..to].fill(0),
+                    Elements::Parts(cells) => cells[from..to].fill(0),
+                    Elements::Counts(cells) => cells[from..to].fill(0),
+                }
             }
         }
     }
 }
 
 /// Splits off the first cells of a slice.
-pub(super) fn first<'a, T>(slice: &mut &'a mut [T], cells: usize) -> &'a mut [T] {
+pub(crate) fn first<'a, T>(slice: &mut &'a mut [T], cells: usize) -> &'a mut [T] {
     let (first, rest) = std::mem::take(slice).split_at_mut(cells);
     *slice = rest;
     first

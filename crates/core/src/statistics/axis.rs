@@ -89,10 +89,10 @@ impl Axis {
     /// NaN. EVEN: all bins of every axis have the same width. The search among other bins uses registers of the bounce loop even
     /// where it is skipped, so that the loop is compiled with and without it.
     #[inline(always)]
-    pub(super) fn locate<S: Simd, const K: usize, const N: usize, const EVEN: bool>(
+    pub(super) fn locate<S: Simd, const N: usize, const EVEN: bool>(
         axes: [&Self; N],
-        x: [Pack<S, K>; N],
-    ) -> [Pack<S, K>; N] {
+        x: [Pack<S, 1>; N],
+    ) -> [Pack<S, 1>; N] {
         if EVEN {
             return Self::locate_even(axes, x);
         }
@@ -109,7 +109,7 @@ impl Axis {
     }
 
     #[inline(always)]
-    fn locate_one<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
+    fn locate_one<S: Simd>(&self, x: Pack<S, 1>) -> Pack<S, 1> {
         match &self.cells {
             Some(cells) => cells.locate(x),
             None => Self::locate_even([self], [x])[0],
@@ -118,10 +118,10 @@ impl Axis {
 
     /// The same for bins of equal width: a single test for all axes decides whether any number is near an edge.
     #[inline(always)]
-    fn locate_even<S: Simd, const K: usize, const N: usize>(
+    fn locate_even<S: Simd, const N: usize>(
         axes: [&Self; N],
-        x: [Pack<S, K>; N],
-    ) -> [Pack<S, K>; N] {
+        x: [Pack<S, 1>; N],
+    ) -> [Pack<S, 1>; N] {
         let mut places = x;
         let mut bins = x;
         let mut most = Pack::splat(x[0].simd(), 0.0);
@@ -140,7 +140,7 @@ impl Axis {
 
     /// Position of `x` in bin widths; integers are the centres of the bins.
     #[inline(always)]
-    fn place<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
+    fn place<S: Simd>(&self, x: Pack<S, 1>) -> Pack<S, 1> {
         (x - self.low)
             .mul_add(self.density, 0.5)
             .max(0.0)
@@ -149,12 +149,7 @@ impl Axis {
 
     /// The bins, with the lanes that are near an edge decided by comparison with the edge.
     #[inline(always)]
-    fn decided<S: Simd, const K: usize>(
-        &self,
-        x: Pack<S, K>,
-        place: Pack<S, K>,
-        bin: Pack<S, K>,
-    ) -> Pack<S, K> {
+    fn decided<S: Simd>(&self, x: Pack<S, 1>, place: Pack<S, 1>, bin: Pack<S, 1>) -> Pack<S, 1> {
         // Lanes are accessed one by one only here, which is rarely reached.
         let far = off(place, bin).lt(0.5 - NEAR);
         let (x, place) = (far.select(0.0, x), far.select(0.0, place));
@@ -180,6 +175,6 @@ impl Axis {
 
 /// Distance of a position from the centre of its bin.
 #[inline(always)]
-fn off<S: Simd, const K: usize>(place: Pack<S, K>, bin: Pack<S, K>) -> Pack<S, K> {
+fn off<S: Simd>(place: Pack<S, 1>, bin: Pack<S, 1>) -> Pack<S, 1> {
     (place - (bin - ROUND)).abs()
 }

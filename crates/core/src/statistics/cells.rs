@@ -6,8 +6,8 @@
 use super::whole::{ROUND, whole};
 use crate::Error;
 use crate::memory::{collected, empty, zeros};
-use crate::simd::Pack;
-use pulp::{Scalar, Simd};
+use crate::simd::{Pack, one};
+use pulp::Simd;
 
 /// Largest number of cells, unless there are more edges: the table then fits into a cache.
 const MOST: usize = 1 << 14;
@@ -51,7 +51,7 @@ enum Scale {
 impl Scale {
     /// The cells of numbers, from 0 to `last`; any for NaN.
     #[inline(always)]
-    fn cells<S: Simd, const K: usize>(self, x: Pack<S, K>, last: f64) -> Pack<S, K> {
+    fn cells<S: Simd>(self, x: Pack<S, 1>, last: f64) -> Pack<S, 1> {
         match self {
             Self::Linear { low, density } => ((x - low) * density).max(0.0).min(last) + ROUND,
             Self::Octaves {
@@ -97,8 +97,7 @@ impl Scale {
 
     /// The cell of a number.
     fn cell(self, x: f64, cells: usize) -> usize {
-        let x = Pack::<_, 1>::splat(Scalar::new(), x);
-        index(self.cells(x, (cells - 1) as f64).as_slice()[0], cells)
+        index(self.cells(one(x), (cells - 1) as f64).as_slice()[0], cells)
     }
 
     /// Number of edges in all cells before each of the `cells` cells; `name` is for the error.
@@ -173,7 +172,7 @@ impl Cells {
 
     /// Numbers of the bins, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above; any for NaN.
     #[inline(always)]
-    pub fn locate<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
+    pub fn locate<S: Simd>(&self, x: Pack<S, 1>) -> Pack<S, 1> {
         let Self {
             scale,
             cells,
@@ -184,7 +183,7 @@ impl Cells {
         let x = x.min(f64::MAX);
         let places = scale.cells(x, *last);
         let (mut edge, mut number) = (x, x);
-        for lane in 0..Pack::<S, K>::WIDTH {
+        for lane in 0..Pack::<S, 1>::WIDTH {
             let cell = cells[index(places.as_slice()[lane], cells.len())];
             edge.as_mut_slice()[lane] = cell.edge;
             number.as_mut_slice()[lane] = cell.number;
@@ -218,7 +217,7 @@ mod tests {
 
     fn agrees(edges: &[f64], x: f64) {
         let cells = Cells::new("edges", edges).unwrap();
-        let bin = cells.locate(Pack::<_, 1>::splat(Scalar::new(), x));
+        let bin = cells.locate(one(x));
         let expected = edges.partition_point(|&edge| edge <= x);
         assert_eq!(whole(bin.as_slice()[0]), expected, "{x} in {edges:?}");
     }

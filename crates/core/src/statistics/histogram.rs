@@ -3,7 +3,6 @@
 use super::bins::{Bins, WHAT};
 use super::rows::Rows;
 use crate::Error;
-use crate::StopReason;
 use crate::memory::zeros;
 use bytemuck_alloc::allocation::cast_vec;
 
@@ -112,7 +111,7 @@ impl Histogram {
         Ok(Self {
             restitution: Grid::new(rows, bins.restitution.bins() + 1)?,
             fraction: Grid::new(rows, columns)?,
-            rows: Rows::new(bins, origin, StopReason::NAMES.len())?,
+            rows: Rows::new(bins, origin)?,
         })
     }
 

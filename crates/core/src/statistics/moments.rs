@@ -4,51 +4,43 @@
 //! are then summed without further rounding, in integers wide enough for 2⁶⁴ values. Merging is therefore associative and commutative
 //! to the last bit.
 
-use super::recent::{Extremes, QUANTA, Totals};
+use super::recent::{Extremes, QUANTA};
 
-/// A two's-complement integer of N 64-bit words, low word first.
+/// A two's-complement integer of five 64-bit words, low word first: wide enough for Σq⁴ and for what moments are made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Wide<const N: usize>([u64; N]);
+struct Wide([u64; 5]);
 
-impl<const N: usize> Wide<N> {
-    const ZERO: Self = Self([0; N]);
+impl Wide {
+    const ZERO: Self = Self([0; 5]);
 
-    /// Adds `value`, whose missing high words are those of its sign (`fill` = 0 or !0).
-    #[inline(always)]
-    fn add<const M: usize>(&mut self, value: [u64; M], fill: u64) {
+    fn of(x: i128) -> Self {
+        let sign = (x >> 127) as u64;
+        Self([x as u64, (x >> 64) as u64, sign, sign, sign])
+    }
+
+    fn is_negative(self) -> bool {
+        self.0[4] >> 63 == 1
+    }
+
+    fn plus(mut self, other: Self) -> Self {
         let mut carry = false;
-        for (i, word) in self.0.iter_mut().enumerate() {
-            let addend = if i < M { value[i] } else { fill };
+        for (word, addend) in self.0.iter_mut().zip(other.0) {
             let (sum, first) = word.overflowing_add(addend);
             let (sum, second) = sum.overflowing_add(u64::from(carry));
             *word = sum;
             carry = first | second;
         }
-    }
-
-    /// The same number with six words.
-    fn widened(self) -> Wide<6> {
-        let mut wide = Wide::ZERO;
-        let negative = self.0[N - 1] >> 63 == 1;
-        wide.add(self.0, if negative { u64::MAX } else { 0 });
-        wide
-    }
-
-    fn negated(self) -> Self {
-        let mut negated = Self(self.0.map(|word| !word));
-        negated.add([1], 0);
-        negated
-    }
-
-    fn plus(mut self, other: Self) -> Self {
-        self.add(other.0, 0);
         self
     }
 
-    /// The product with a factor, which must fit into N words.
+    fn negated(self) -> Self {
+        Self(self.0.map(|word| !word)).plus(Self::of(1))
+    }
+
+    /// The product with a factor, which must fit into the words.
     fn times(self, factor: i64) -> Self {
         let mut carry = 0_u64;
-        // Modulo 2^(64 N) the product of the two's complements is the two's complement of the product.
+        // Modulo 2³²⁰ the product of the two's complements is the two's complement of the product.
         let product = Self(self.0.map(|word| {
             let sum = u128::from(word) * u128::from(factor.unsigned_abs()) + u128::from(carry);
             carry = (sum >> 64) as u64;
@@ -63,22 +55,22 @@ impl<const N: usize> Wide<N> {
 
     /// The nearest double, up to a few units in the last place.
     fn to_f64(self) -> f64 {
-        let negative = self.0[N - 1] >> 63 == 1;
-        let magnitude = if negative { self.negated() } else { self };
+        let magnitude = if self.is_negative() {
+            self.negated()
+        } else {
+            self
+        };
         let size = magnitude.0.iter().rev().fold(0.0, |sum, &word| {
             f64::mul_add(sum, 18_446_744_073_709_551_616.0, word as f64)
         });
-        if negative { -size } else { size }
+        if self.is_negative() { -size } else { size }
     }
 }
 
 /// Σq, Σq², Σq³, Σq⁴ and the extremes of the values in one bin, where q is the offset of a value from an origin, in quanta of 2⁻²⁴.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sums {
-    first: Wide<2>,
-    second: Wide<3>,
-    third: Wide<4>,
-    fourth: Wide<5>,
+    powers: [Wide; 4],
     minimum: f64,
     maximum: f64,
 }
@@ -103,10 +95,7 @@ pub struct Moments {
 impl Sums {
     /// The sums of no values.
     pub const EMPTY: Self = Self {
-        first: Wide::ZERO,
-        second: Wide::ZERO,
-        third: Wide::ZERO,
-        fourth: Wide::ZERO,
+        powers: [Wide::ZERO; 4],
         minimum: f64::INFINITY,
         maximum: f64::NEG_INFINITY,
     };
@@ -116,57 +105,19 @@ impl Sums {
 
     /// Adds an offset, in quanta, of any size below [`Sums::LARGEST`].
     pub(super) fn add(&mut self, q: i64) {
-        let sign = (q >> 63) as u64;
-        let size = q.unsigned_abs();
-        if size < 1 << 32 {
-            let square = size * size;
-            let [third, fourth] = [size, square].map(|x| u128::from(square) * u128::from(x));
-            let third = if sign == 0 {
-                third
-            } else {
-                third.wrapping_neg()
-            };
-            self.first.add([q as u64], sign);
-            self.second.add([square], 0);
-            self.third.add(words(third), sign);
-            self.fourth.add(words(fourth), 0);
-        } else {
-            self.add_wide(q, size);
+        let mut power = Wide::of(1);
+        for sum in &mut self.powers {
+            power = power.times(q);
+            *sum = sum.plus(power);
         }
     }
 
-    /// The same for an offset whose square does not fit into one word.
-    #[cold]
-    fn add_wide(&mut self, q: i64, size: u64) {
-        let sign = (q >> 63) as u64;
-        let square = u128::from(size) * u128::from(size);
-        let (low, high) = (square as u64, (square >> 64) as u64);
-        self.first.add([q as u64], sign);
-        self.second.add([low, high], 0);
-        let product = |a: u64, b: u64| u128::from(a) * u128::from(b);
-        let mut cube = Wide([0_u64; 4]);
-        cube.add(words(product(low, size)), 0);
-        cube.add(shifted(product(high, size), 1), 0);
-        if sign != 0 {
-            cube = cube.negated();
+    /// Adds recent sums of the four powers of offsets that are in multiples of `unit` quanta.
+    pub(super) fn absorb(&mut self, recent: [i128; 4], unit: i64) {
+        for (power, (sum, recent)) in self.powers.iter_mut().zip(recent).enumerate() {
+            let recent = (0..=power).fold(Wide::of(recent), |product, _| product.times(unit));
+            *sum = sum.plus(recent);
         }
-        self.third.add(cube.0, sign);
-        self.fourth.add(words(product(low, low)), 0);
-        self.fourth.add(shifted(product(low, high), 1), 0);
-        self.fourth.add(shifted(product(low, high), 1), 0);
-        self.fourth.add(shifted(product(high, high), 2), 0);
-    }
-
-    /// Adds recent sums, whose offsets are in multiples of `unit` quanta.
-    pub(super) fn absorb(&mut self, recent: &Totals, unit: i64) {
-        let power = |sum: i128, power: u32| {
-            let sum = Wide(words(sum as u128)).widened();
-            (0..power).fold(sum, |product, _| product.times(unit))
-        };
-        self.first.add(power(recent.first.into(), 1).0, 0);
-        self.second.add(power(recent.second.into(), 2).0, 0);
-        self.third.add(power(recent.third, 3).0, 0);
-        self.fourth.add(power(recent.fourth, 4).0, 0);
     }
 
     /// Adds the extremes of recent values.
@@ -177,20 +128,20 @@ impl Sums {
 
     /// Adds the sums of another set of values.
     pub fn merge(&mut self, other: &Self) {
-        self.first.add(other.first.0, 0);
-        self.second.add(other.second.0, 0);
-        self.third.add(other.third.0, 0);
-        self.fourth.add(other.fourth.0, 0);
+        for (sum, other) in self.powers.iter_mut().zip(other.powers) {
+            *sum = sum.plus(other);
+        }
         self.minimum = self.minimum.min(other.minimum);
         self.maximum = self.maximum.max(other.maximum);
     }
 
-    /// Calls `visit` with every word, which it may change.
+    /// Calls `visit` with every word, which it may change. Words that the powers of 2⁶⁴ values do not need repeat the sign.
     pub(super) fn words(&mut self, visit: &mut impl FnMut(&mut u64)) {
-        self.first.0.iter_mut().for_each(&mut *visit);
-        self.second.0.iter_mut().for_each(&mut *visit);
-        self.third.0.iter_mut().for_each(&mut *visit);
-        self.fourth.0.iter_mut().for_each(&mut *visit);
+        for (power, sum) in self.powers.iter_mut().enumerate() {
+            let (words, rest) = sum.0.split_at_mut(power + 2);
+            words.iter_mut().for_each(&mut *visit);
+            rest.fill((words[power + 1] as i64 >> 63) as u64);
+        }
         for extreme in [&mut self.minimum, &mut self.maximum] {
             float(extreme, visit);
         }
@@ -201,15 +152,10 @@ impl Sums {
         const UNIT: f64 = 1.0 / QUANTA;
         let n = number as f64;
         // Exact sums of powers about the multiple of a quantum next to the mean, so that no digits cancel afterwards.
-        let centre = (self.first.to_f64() / n).round_ties_even() as i64;
-        let count = Wide([number, 0]).widened();
-        let sums = [
-            self.first.widened(),
-            self.second.widened(),
-            self.third.widened(),
-            self.fourth.widened(),
-        ];
-        let term = |sum: Wide<6>, binomial: i64, power: u32| {
+        let sums = self.powers;
+        let centre = (sums[0].to_f64() / n).round_ties_even() as i64;
+        let count = Wide::of(number.into());
+        let term = |sum: Wide, binomial: i64, power: u32| {
             (0..power).fold(sum.times(binomial), |product, _| product.times(-centre))
         };
         let first = sums[0].plus(term(count, 1, 1));
@@ -244,18 +190,6 @@ impl Sums {
     }
 }
 
-fn words(x: u128) -> [u64; 2] {
-    [x as u64, (x >> 64) as u64]
-}
-
-/// The words of x · 2^(64 · places).
-fn shifted(x: u128, places: usize) -> [u64; 4] {
-    let mut out = [0; 4];
-    out[places] = x as u64;
-    out[places + 1] = (x >> 64) as u64;
-    out
-}
-
 /// Calls `visit` with the bits of a number.
 pub(super) fn float(number: &mut f64, visit: &mut impl FnMut(&mut u64)) {
     let mut bits = number.to_bits();
@@ -267,7 +201,7 @@ pub(super) fn float(number: &mut f64, visit: &mut impl FnMut(&mut u64)) {
 mod tests {
     use super::*;
 
-    /// One offset q beside its negative, and beside two zeros, of every size, and just where its square no longer fits into a word:
+    /// One offset q beside its negative, and beside two zeros, of every size, and just where its square no longer fits into 64 bits:
     /// variances q² and 2q²/9, skewnesses 0 and ±1/√2, kurtoses 1 and 3/2.
     #[test]
     fn offsets_of_every_size_are_summed_alike() {

@@ -34,12 +34,12 @@ pub(super) type Half = [f64; 4];
 /// Both halves for an offset of ε from its origin, with `quanta` quanta in a unit, for E_rot/E_tot, and for whether energy was
 /// created.
 #[inline(always)]
-pub(super) fn words<S: Simd, const K: usize>(
-    offset: Pack<S, K>,
-    quanta: Pack<S, K>,
-    fraction: Pack<S, K>,
-    gaining: Mask<S, K>,
-) -> [[Pack<S, K>; 4]; 2] {
+pub(super) fn words<S: Simd>(
+    offset: Pack<S, 1>,
+    quanta: Pack<S, 1>,
+    fraction: Pack<S, 1>,
+    gaining: Mask<S, 1>,
+) -> [[Pack<S, 1>; 4]; 2] {
     let first = offset.mul_add(quanta, ROUND);
     let q = first - ROUND;
     let square = q * q;
@@ -93,10 +93,7 @@ pub(super) struct Recent([u64; 8]);
 /// The same as plain numbers.
 pub(super) struct Totals {
     /// Σq, Σq², Σq³, Σq⁴.
-    pub first: i64,
-    pub second: u64,
-    pub third: i128,
-    pub fourth: i128,
+    pub powers: [i128; 4],
     /// Σ E_rot/E_tot.
     pub fractions: u64,
     /// Number of values with which energy was created.
@@ -128,10 +125,12 @@ impl Recent {
             i128::from(sum(high, unit)) * unit as i128 + i128::from(sum(high + 1, 1.0))
         };
         Totals {
-            first: sum(0, 1.0),
-            second: sum(1, 1.0) as u64,
-            third: joined(2, CUBIC),
-            fourth: joined(4, QUARTIC),
+            powers: [
+                sum(0, 1.0).into(),
+                (sum(1, 1.0) as u64).into(),
+                joined(2, CUBIC),
+                joined(4, QUARTIC),
+            ],
             fractions: sum(6, 1.0) as u64,
             gains,
         }
@@ -186,10 +185,10 @@ mod tests {
                 assert_eq!(sums.add(&low, &high), number == MOST, "{number}");
                 let count = i128::from(number);
                 let totals = sums.totals();
-                assert_eq!(i128::from(totals.first), count * q);
-                assert_eq!(i128::from(totals.second), count * q.pow(2));
-                assert_eq!(totals.third, count * q.pow(3));
-                assert_eq!(totals.fourth, count * q.pow(4));
+                assert_eq!(
+                    totals.powers,
+                    [1, 2, 3, 4].map(|power| count * q.pow(power))
+                );
                 let quanta = count * (fraction * FRACTION_QUANTA) as i128;
                 assert_eq!(i128::from(totals.fractions), quanta);
                 assert_eq!(totals.gains, if gaining { number } else { 0 });

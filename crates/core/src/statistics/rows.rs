@@ -3,9 +3,9 @@
 use super::bins::{Bins, WHAT};
 use super::moments::{Moments, Sums};
 use super::recent::FRACTION_QUANTA;
-use crate::Error;
 use crate::memory::{copied, filled, zeros};
 use crate::simd::{Mask, Pack};
+use crate::{Error, StopReason};
 use pulp::Simd;
 
 /// Energy ratio above which an impact counts as creating kinetic energy. Rounding errors of the ratio are a few 10⁻¹⁵.
@@ -16,10 +16,7 @@ pub const PULLS: f64 = 1e-12;
 
 /// The lanes with an impact in which the plane pulls at the body: P_n < 0.
 #[inline(always)]
-pub(super) fn pulling<S: Simd, const K: usize>(
-    velocity: Pack<S, K>,
-    restitution: Pack<S, K>,
-) -> Mask<S, K> {
+pub(super) fn pulling<S: Simd>(velocity: Pack<S, 1>, restitution: Pack<S, 1>) -> Mask<S, 1> {
     let rebound = velocity * restitution;
     (velocity + rebound).lt((velocity.abs() + rebound.abs()) * -PULLS)
 }
@@ -68,8 +65,8 @@ impl Gains {
 }
 
 impl Rows {
-    /// The sums of no impacts, relative to `origin`, of particles that may stop for so many reasons.
-    pub(crate) fn new(bins: &Bins, origin: f64, reasons: usize) -> Result<Self, Error> {
+    /// The sums of no impacts, relative to `origin`.
+    pub(crate) fn new(bins: &Bins, origin: f64) -> Result<Self, Error> {
         let rows = bins.rows();
         let summed = bins.fraction.as_ref().map_or(0, |_| rows);
         Ok(Self {
@@ -79,7 +76,7 @@ impl Rows {
             fractions: zeros(WHAT, summed)?,
             gains: filled(WHAT, Gains::default(), rows)?,
             pulls: 0,
-            stops: zeros(WHAT, reasons)?,
+            stops: zeros(WHAT, StopReason::NAMES.len())?,
         })
     }
 

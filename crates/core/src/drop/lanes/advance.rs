@@ -6,11 +6,11 @@
 
 use super::collision::{Collisions, Dimension};
 use super::group::Group;
+use super::impact::Meanwhile;
 use super::interleaved::{Idle, is_interleaved, work_up};
-use super::particles::{Lost, Release, Unconverged};
+use super::particles::{Lost, Release};
 use super::passes::{SearchOn, pass};
 use crate::law::{Law, Respond, Response};
-use crate::record::Meanwhile;
 use crate::shape::{Body, Hull, Surface, with_hull};
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
@@ -46,22 +46,11 @@ pub(crate) trait Advance<S: Simd, T: Dimension> {
 
 /// Hull and law inlined in the bounce loop, and the work of the sink interleaved with the stages; used for the most common runs.
 pub(crate) struct Inlined<'a, H, L> {
-    body: &'a Body,
-    hull: &'a H,
-    law: &'a L,
-    slope: f64,
-}
-
-impl<'a, H, L> Inlined<'a, H, L> {
-    /// The motion over a plane that descends along x with this slope, tan α.
-    pub fn new(body: &'a Body, hull: &'a H, law: &'a L, slope: f64) -> Self {
-        Self {
-            body,
-            hull,
-            law,
-            slope,
-        }
-    }
+    pub body: &'a Body,
+    pub hull: &'a H,
+    pub law: &'a L,
+    /// tan α.
+    pub slope: f64,
 }
 
 /// Every hull and law, compiled once for all sinks.
@@ -109,26 +98,16 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
         collisions: &mut Collisions<S>,
         sink: &mut impl Meanwhile,
     ) -> Result<(), Lost> {
-        self.take_off(groups, sink);
+        for (i, group) in groups.iter_mut().enumerate() {
+            group.start(self.slope, self.hull);
+            work_up::<S>(sink, i, 0);
+        }
         find(groups, self.hull, sink)?;
         self.collide(groups, collisions, sink)
     }
 }
 
 impl<H: Hull, L: Respond> Inlined<'_, H, L> {
-    /// Starts the flights.
-    #[inline(always)]
-    fn take_off<S: Simd, T: Dimension>(
-        &self,
-        groups: &mut [Group<S, T>],
-        sink: &mut impl Meanwhile,
-    ) {
-        for (i, group) in groups.iter_mut().enumerate() {
-            group.start(self.slope, self.hull);
-            work_up::<S>(sink, i, 0);
-        }
-    }
-
     /// Moves the bodies to their contacts, and applies the law.
     #[inline(always)]
     fn collide<S: Simd, T: Dimension>(
@@ -189,7 +168,7 @@ pub(crate) fn find<S: Simd, T: Dimension>(
     groups: &mut [Group<S, T>],
     hull: &impl Hull,
     sink: &mut impl Meanwhile,
-) -> Result<(), Unconverged> {
+) -> Result<(), Lost> {
     for (i, group) in groups.iter_mut().enumerate() {
         group.begin_search(hull);
         work_up::<S>(sink, i, 1);
@@ -210,7 +189,13 @@ pub(crate) fn find<S: Simd, T: Dimension>(
 
 impl<'a, 'b> General<'a, 'b> {
     fn with<H>(&self, hull: &'a H) -> Inlined<'a, H, Law<'b>> {
-        Inlined::new(self.body, hull, self.law, self.slope)
+        let Self { body, law, slope } = *self;
+        Inlined {
+            body,
+            hull,
+            law,
+            slope,
+        }
     }
 
     fn surface(&self) -> &'a Surface {

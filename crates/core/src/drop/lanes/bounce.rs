@@ -11,6 +11,7 @@ use crate::shape::Body;
 use crate::simd::Pack;
 use pulp::{Simd, WithSimd};
 use std::hint::black_box;
+use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Simulates the `particles` of a release, as many at a time as N groups have lanes. Calls `go_on` before every impact.
@@ -55,11 +56,13 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
             }
         }
         cycle.advance(groups, &mut collisions, sink)?;
-        ended = if L::INTERLEAVED {
-            report::<S, T, _, false>(simd, groups, (body, limits), sink)
-        } else {
-            report::<S, T, _, true>(simd, groups, (body, limits), sink)
-        };
+        ended = simd.vectorize(Report {
+            groups,
+            body,
+            limits,
+            cycle: PhantomData::<L>,
+            sink,
+        });
     }
     if L::INTERLEAVED {
         sink.settle(of_groups::<S>(0..groups.len()));
@@ -87,35 +90,17 @@ fn in_use<S: Simd, T: Dimension>(groups: &mut [Group<S, T>]) -> &mut [Group<S, T
     &mut groups[..count]
 }
 
-/// Compiles [`Report`] for the SIMD level, and calls it.
-#[inline(always)]
-fn report<S: Simd, T: Dimension, K: ImpactSink, const SETTLE: bool>(
-    simd: S,
-    groups: &mut [Group<S, T>],
-    (body, limits): (&Body, Limits),
-    sink: &mut K,
-) -> bool {
-    simd.vectorize(Report::<S, T, K, SETTLE> {
-        groups,
-        body,
-        limits,
-        sink,
-    })
-}
-
-/// Hands an impact of all groups to the sink, which works the impacts up if it is to `SETTLE` them; returns whether some particle has
-/// ended. Compiled separately, and for either case by itself, because the rare branches of the sinks would take registers from the other
-/// stages.
-struct Report<'a, S: Simd, T: Dimension, K, const SETTLE: bool> {
+/// Hands an impact of all groups to the sink, which works the impacts up unless the stages do; returns whether some particle has ended.
+/// Compiled separately, because the rare branches of the sinks would take registers from the other stages.
+struct Report<'a, S: Simd, T: Dimension, L, K> {
     groups: &'a mut [Group<S, T>],
     body: &'a Body,
     limits: Limits,
+    cycle: PhantomData<L>,
     sink: &'a mut K,
 }
 
-impl<S: Simd, T: Dimension, K: ImpactSink, const SETTLE: bool> WithSimd
-    for Report<'_, S, T, K, SETTLE>
-{
+impl<S: Simd, T: Dimension, L: Advance<S, T>, K: ImpactSink> WithSimd for Report<'_, S, T, L, K> {
     type Output = bool;
 
     #[inline(always)]
@@ -124,7 +109,7 @@ impl<S: Simd, T: Dimension, K: ImpactSink, const SETTLE: bool> WithSimd
         for (i, group) in self.groups.iter_mut().enumerate() {
             ended |= group.report(i, self.body, self.limits, self.sink);
         }
-        if SETTLE {
+        if !L::INTERLEAVED {
             self.sink.settle(of_groups::<S>(0..self.groups.len()));
         }
         ended
@@ -133,10 +118,11 @@ impl<S: Simd, T: Dimension, K: ImpactSink, const SETTLE: bool> WithSimd
 
 #[cfg(test)]
 mod tests {
-    use crate::drop::{Bounces, Orientation, PLACES, Plan, Run, StopReason, bounce_block};
-    use crate::record::{Event, Meanwhile, Sink};
+    use crate::drop::{
+        Impact, ImpactSink, JoinedRuns, Meanwhile, PLACES, Pose, Run, StopReason, bounce_block,
+    };
     use crate::simd::{Level, Pack};
-    use crate::{Dumbbell, Law, Monitor, Spin, TangentialRestitution, Vector};
+    use crate::{Dumbbell, Law, Monitor, TangentialRestitution};
     use pulp::Simd;
     use std::ops::Range;
 
@@ -157,16 +143,10 @@ mod tests {
         }
     }
 
-    impl Sink<Bounces> for Cancelling<'_> {
-        fn begin(&mut self) {}
-
-        fn event<S: Simd, E: Event<S, K, Of = Bounces>, const K: usize>(
-            &mut self,
-            group: usize,
-            event: &E,
-        ) {
-            event.active().each(|lane| {
-                let place = group * Pack::<S, K>::WIDTH + lane;
+    impl ImpactSink for Cancelling<'_> {
+        fn impact<S: Simd, P: Pose<S>>(&mut self, group: usize, impact: &Impact<S, P>) {
+            impact.active.each(|lane| {
+                let place = group * Pack::<S, 1>::WIDTH + lane;
                 assert!(!self.waits[place], "an impact is lost");
                 self.waits[place] = true;
                 self.impacts += 1;
@@ -188,17 +168,10 @@ mod tests {
             law: Law::new(0.9, tangential).unwrap(),
             particles: 100,
             impacts: 7,
-            orientation: Orientation::UniformAngle,
-            release_height: 0.06.into(),
-            release_velocity: Vector::default(),
-            spin: Spin::NONE,
-            gravity: 9.81,
-            incline: 0.0,
-            minimum_speed: 0.0,
-            settled: 0.0,
             seed: 1,
+            ..Run::default()
         };
-        let plan = Plan::new(&run).unwrap();
+        let runs = JoinedRuns::of(&run).unwrap();
         for level in Level::available() {
             for particles in [1, 5, 100] {
                 for most in [1, 3, 30, 150, 400, usize::MAX] {
@@ -211,7 +184,7 @@ mod tests {
                         waits: [false; PLACES],
                     };
                     let range: Range<usize> = 0..particles;
-                    bounce_block(&plan, range, level, &monitor, &mut sink).unwrap();
+                    bounce_block(&runs, range, level, &monitor, &mut sink).unwrap();
                     assert_eq!(sink.done, sink.impacts, "{level:?}, {particles}, {most}");
                     if most == usize::MAX {
                         assert_eq!(sink.done, 7 * particles);

@@ -6,7 +6,7 @@ pub mod one_lane;
 
 use super::collision::{Collide, ContactPoint, Dimension};
 use super::impact::{Impact, ImpactSink, SymmetricPose};
-use super::particles::{Lost, Particles, Release, Unconverged};
+use super::particles::{Lost, Particles, Release};
 use crate::contact::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
 };
@@ -297,14 +297,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
             }
             match law.respond(&contact.lane(lane), along.map(|part| part.as_slice()[lane])) {
                 Ok(answer) => response.put(lane, &answer),
-                Err(fault) => {
-                    let (particle, impacts) = self.particles.trajectory(lane);
-                    found = Err(Lost {
-                        particle,
-                        impacts,
-                        fault: Some(Box::new(fault)),
-                    });
-                }
+                Err(fault) => found = Err(self.particles.lost(lane, Some(Box::new(fault)))),
             }
         });
         found.map(|()| response)
@@ -377,7 +370,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
             },
             active: landing,
         };
-        sink.event(number, &impact);
+        sink.impact(number, &impact);
         let waiting = self.is_behind.then(|| self.behind());
         self.particles.count(landing, clock, waiting);
         if limits.minimum_speed > 0.0 {
@@ -397,11 +390,12 @@ impl<S: Simd, T: Dimension> Group<S, T> {
 
     /// An error if the search of some particle takes too many passes.
     #[inline(always)]
-    pub fn converged(&self) -> Result<(), Unconverged> {
+    pub fn converged(&self) -> Result<(), Lost> {
         let lost = !self.passes.lt(f64::from(MOST_STEPS));
+        let mut converged = Ok(());
         if lost.any() {
-            return self.particles.unconverged(lost);
+            lost.each(|lane| converged = Err(self.particles.lost(lane, None)));
         }
-        Ok(())
+        converged
     }
 }

@@ -15,7 +15,7 @@ pub(super) use bounce::bounce;
 pub(super) use collision::{Dimension, Planar, Spatial};
 #[cfg(feature = "one-lane")]
 pub use group::one_lane;
-pub(crate) use impact::{Bounces, Impact, ImpactSink, Pose};
+pub(crate) use impact::{Impact, ImpactSink, Meanwhile, Pose};
 pub(super) use interleaved::GROUPS;
 pub(crate) use interleaved::{PLACES, of_group};
 pub(super) use particles::{Lost, Release};

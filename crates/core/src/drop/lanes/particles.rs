@@ -17,29 +17,12 @@ pub(crate) trait Release {
     fn chance(&self, particle: usize, impact: usize) -> f64;
 }
 
-/// The particle whose contact search did not converge.
-#[derive(Debug)]
-pub(crate) struct Unconverged {
-    pub particle: usize,
-    pub impacts: usize,
-}
-
 /// The particle that cannot be followed: its contact search did not converge, or a law of one's own gave no impulse that is possible.
 #[derive(Debug)]
 pub(crate) struct Lost {
     pub particle: usize,
     pub impacts: usize,
     pub fault: Option<Box<Fault>>,
-}
-
-impl From<Unconverged> for Lost {
-    fn from(Unconverged { particle, impacts }: Unconverged) -> Self {
-        Self {
-            particle,
-            impacts,
-            fault: None,
-        }
-    }
 }
 
 /// As many particles as a vector has lanes.
@@ -146,19 +129,6 @@ impl<S: Simd> Particles<S> {
         }
     }
 
-    /// Ends the particles that have reached the largest number of impacts, and determines when the next one may.
-    #[inline(always)]
-    fn end_those_with_all_impacts(&mut self, most: f64) {
-        self.end(self.impacts().eq(most), StopReason::ImpactsReached);
-        let idle = self.active.select(self.idle, f64::INFINITY);
-        self.due = most
-            + idle
-                .as_slice()
-                .iter()
-                .copied()
-                .fold(f64::INFINITY, f64::min);
-    }
-
     /// The number of impacts of each particle.
     #[inline(always)]
     pub fn impacts(&self) -> Pack<S, 1> {
@@ -200,25 +170,26 @@ impl<S: Simd> Particles<S> {
     }
 
     /// The particle in a lane, and the number of its impacts.
-    pub fn trajectory(&self, lane: usize) -> (usize, usize) {
+    fn trajectory(&self, lane: usize) -> (usize, usize) {
         let [particle, impacts] =
             [self.number, self.impacts()].map(|count| count.as_slice()[lane] as usize);
         (particle, impacts)
     }
 
-    /// The error that names the particle in the last of these lanes.
+    /// The error that names the particle in a lane.
     #[cold]
-    pub fn unconverged(&self, lost: Mask<S, 1>) -> Result<(), Unconverged> {
-        let mut converged = Ok(());
-        lost.each(|lane| {
-            let (particle, impacts) = self.trajectory(lane);
-            converged = Err(Unconverged { particle, impacts });
-        });
-        converged
+    pub fn lost(&self, lane: usize, fault: Option<Box<Fault>>) -> Lost {
+        let (particle, impacts) = self.trajectory(lane);
+        Lost {
+            particle,
+            impacts,
+            fault,
+        }
     }
 }
 
-/// [`Particles::end_those_with_all_impacts`], compiled separately for each SIMD level, because it is rare.
+/// Ends the particles that have reached the largest number of impacts, and determines when the next one may. Compiled separately for each
+/// SIMD level, because it is rare.
 struct Due<'a, S: Simd> {
     particles: &'a mut Particles<S>,
     most: f64,
@@ -229,6 +200,15 @@ impl<S: Simd> WithSimd for Due<'_, S> {
 
     #[inline(always)]
     fn with_simd<U: Simd>(self, _: U) {
-        self.particles.end_those_with_all_impacts(self.most);
+        let Self { particles, most } = self;
+        let complete = particles.impacts().eq(most);
+        particles.end(complete, StopReason::ImpactsReached);
+        let idle = particles.active.select(particles.idle, f64::INFINITY);
+        let least = idle
+            .as_slice()
+            .iter()
+            .copied()
+            .fold(f64::INFINITY, f64::min);
+        particles.due = most + least;
     }
 }

@@ -2,9 +2,9 @@
 
 use super::collision::Dimension;
 use super::group::Group;
+use super::impact::Meanwhile;
 use super::interleaved::{Idle, work_up};
-use super::particles::Unconverged;
-use crate::record::Meanwhile;
+use super::particles::Lost;
 use crate::shape::Hull;
 use crate::simd::Pack;
 use crate::simd::elementary::sincos_in_lanes;
@@ -67,7 +67,7 @@ pub(super) struct SearchOn<'a, S: Simd, T: Dimension, H> {
 }
 
 impl<S: Simd, T: Dimension, H: Hull> WithSimd for SearchOn<'_, S, T, H> {
-    type Output = Result<(), Unconverged>;
+    type Output = Result<(), Lost>;
 
     #[inline(always)]
     fn with_simd<U: Simd>(self, _: U) -> Self::Output {

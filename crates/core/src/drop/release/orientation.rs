@@ -83,27 +83,19 @@ impl Orientation<'_> {
 
     /// Checks that there is an angle for each particle, in the range of sine and cosine.
     pub(crate) fn check(&self, particles: usize) -> Result<(), Error> {
-        let angles = match self {
+        let (count, angles, attitudes): (_, &[f64], &[[f64; 4]]) = match *self {
             Self::UniformAngle | Self::Isotropic => return Ok(()),
-            Self::Given(angles) => angles,
-            Self::Directions(angles) => angles.as_flattened(),
-            Self::Attitudes(attitudes) => attitudes.as_flattened(),
+            Self::Given(angles) => (angles.len(), angles, &[]),
+            Self::Directions(angles) => (angles.len(), angles.as_flattened(), &[]),
+            Self::Attitudes(attitudes) => (attitudes.len(), &[], attitudes),
         };
-        let each = match self {
-            Self::Attitudes(_) => 4,
-            Self::Directions(_) => 2,
-            _ => 1,
-        };
-        let count = angles.len() / each;
         let allowed = "the number of particles";
         Error::unless(count == particles, "number of angles", count, allowed)?;
-        if let Self::Attitudes(attitudes) = self {
-            return attitudes.iter().try_for_each(|parts| {
-                let square: f64 = parts.iter().map(|x| x * x).sum();
-                let allowed = "a quaternion of finite length > 0";
-                Error::unless(square.is_normal(), "orientation", square, allowed)
-            });
-        }
+        attitudes.iter().try_for_each(|parts| {
+            let square: f64 = parts.iter().map(|x| x * x).sum();
+            let allowed = "a quaternion of finite length > 0";
+            Error::unless(square.is_normal(), "orientation", square, allowed)
+        })?;
         angles.iter().try_for_each(|&angle| {
             let reduced = angle.abs() <= RANGE;
             Error::unless(reduced, "angle", angle, "finite, at most 2^20 rad")

@@ -4,7 +4,7 @@
 //! the bounce loop are chains of vector arithmetic, in which one instruction waits for the result of another. A processor executes both at
 //! once if they stand next to each other in the program. This folder arranges that; docs/performance.md has the time that it saves.
 //!
-//! * **A queue** has a place for each lane of every group ([`PLACES`]). [`Sink::event`](crate::record::Sink::event) computes in all lanes at once
+//! * **A queue** has a place for each lane of every group ([`PLACES`]). [`ImpactSink::impact`](super::ImpactSink::impact) computes in all lanes at once
 //!   what is to be counted and leaves it at the places of its group, [`of_group`].
 //! * **Each stage works up one lane** ([`work_up`]). Eight stages take a group to its next impact, and a vector of AVX-512 has eight lanes, so
 //!   that the places of the group are free when it reports that impact. A lane without an impact is worked up like the others, into sites
@@ -17,8 +17,8 @@
 //! interleaving the impacts are settled as soon as all groups have reported them. Results do not depend on it, because integers are
 //! summed, in any order.
 
+use super::impact::Meanwhile;
 use crate::law::MOST_CONTACTS;
-use crate::record::Meanwhile;
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
 use std::ops::Range;
@@ -32,9 +32,8 @@ pub(crate) const PLACES: usize = GROUPS * LANES;
 
 /// The places of a group, one for each lane.
 #[inline(always)]
-pub(crate) fn of_group<S: Simd, const K: usize>(group: usize) -> Range<usize> {
-    let width = Pack::<S, K>::WIDTH;
-    group * width..(group + 1) * width
+pub(crate) fn of_group<S: Simd>(group: usize) -> Range<usize> {
+    of_groups::<S>(group..group + 1)
 }
 
 /// The places of these groups.
@@ -63,9 +62,4 @@ pub(super) fn work_up<S: Simd>(work: &mut impl Meanwhile, group: usize, lane: us
 /// No work.
 pub(crate) struct Idle;
 
-impl Meanwhile for Idle {
-    const INTERLEAVED: bool = false;
-
-    #[inline(always)]
-    fn meanwhile(&mut self, _: usize) {}
-}
+impl Meanwhile for Idle {}

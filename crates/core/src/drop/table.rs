@@ -1,11 +1,13 @@
-//! The table of all events of a run, filled block by block from many threads.
+//! The table of all impacts of a run, filled block by block from many threads.
 
-use super::column::{Columns, ROOM, TableColumns, TableRows, Values, first};
-use super::event::{Described, Event, Meanwhile, Process, Sink, Source};
-use super::variable::Elements;
-use super::{Slices, Variable};
+use super::lanes::{Impact, ImpactSink, Meanwhile, Pose};
+use super::recorded::{AtRelease, PER_IMPACT, PER_PARTICLE};
+use super::{JoinedRuns, Plan, StopReason};
 use crate::Error;
 use crate::memory::zeros;
+use crate::record::{
+    Columns, Elements, ROOM, Slices, TableColumns, TableRows, Values, Variable, first,
+};
 use crate::simd::LANES;
 use crate::threads::Monitor;
 use pulp::Simd;
@@ -15,57 +17,50 @@ const MOST_BLANKED: usize = 1 << 22;
 /// Number of cells that are blanked between two checks for a cancellation.
 const STRIDE: usize = 1 << 16;
 
-/// Every event of a run, in SI units: tables of shape (row, event), with NaN (0 in flags) where there was no event, and what is known of
-/// each row.
+/// Every impact of a run, in SI units: tables of shape (particle, impact), with NaN (0 in flags) where there was no impact, and what is known
+/// of each particle.
 #[derive(Debug, Clone)]
 pub struct Records {
-    events: TableColumns,
-    rows: TableColumns,
-    /// Number of columns that hold events: all, or the length of the longest row if the run was cancelled. Columns beyond
+    impacts: TableColumns,
+    particles: TableColumns,
+    /// Number of columns that hold impacts: all, or the length of the longest row if the run was cancelled. Columns beyond
     /// it are undefined.
     pub reached: usize,
-    /// Numbers of the rows, where some had to be left out; otherwise empty.
+    /// Numbers of the particles, where some had to be left out; otherwise empty.
     pub particle: Vec<i64>,
-    /// True if a row is blank where there was no event.
+    /// True if a row is blank where there was no impact.
     settled: Vec<bool>,
-    interrupted: i8,
 }
 
 impl Records {
     /// A table of zeros, whose pages are not touched yet: whoever fills a row blanks its end.
-    pub(crate) fn new<P: Process>(
-        plan: &P::Plan<'_>,
-        rows: usize,
-        chosen: &Columns,
-    ) -> Result<Self, Error> {
-        let most = P::most(plan);
-        let known = Columns::chosen(P::ROWS, |about| P::has(plan, about));
+    pub(crate) fn new(plan: &Plan<'_>, particles: usize, chosen: &Columns) -> Result<Self, Error> {
+        let (most, known) = (plan.run.impacts, Columns::of_particles(plan));
         Ok(Self {
-            events: TableColumns::new(P::EVENTS, chosen, rows, most)?,
-            rows: TableColumns::new(P::ROWS, &known, rows, 1)?,
+            impacts: TableColumns::new(PER_IMPACT, chosen, particles, most)?,
+            particles: TableColumns::new(PER_PARTICLE, &known, particles, 1)?,
             reached: most,
             particle: Vec::new(),
-            settled: zeros(ROOM, rows)?,
-            interrupted: P::number(P::INTERRUPTED) as i8,
+            settled: zeros(ROOM, particles)?,
         })
     }
 
-    /// Number of rows.
+    /// Number of particles.
     pub fn particles(&self) -> usize {
         self.settled.len()
     }
 
-    /// Number of events of a row.
+    /// Number of impacts of a particle.
     fn count(&self, row: usize) -> usize {
-        match &self.rows.columns[0] {
+        match &self.particles.columns[0] {
             Some(Elements::Counts(counts)) => counts[row] as usize,
             _ => 0,
         }
     }
 
-    /// A copy of the values of a variable of the events or rows as numbers, row by row; none if it was not recorded.
+    /// A copy of the values of a variable as numbers, row by row; none if it was not recorded.
     pub fn numbers(&self, name: &str) -> Vec<f64> {
-        let grids = [&self.events, &self.rows].into_iter();
+        let grids = [&self.impacts, &self.particles].into_iter();
         let mut known = grids.flat_map(|grid| grid.all.iter().zip(&grid.columns));
         match known.find_map(|(about, values)| values.as_ref().filter(|_| about.name == name)) {
             Some(Elements::Numbers(values)) => values.clone(),
@@ -76,34 +71,34 @@ impl Records {
         }
     }
 
-    /// The recorded variables of the events with their values, which are moved out.
+    /// The recorded variables of the impacts with their values, which are moved out.
     pub fn per_impact(&mut self) -> Vec<(Variable, Values)> {
-        self.events.take()
+        self.impacts.take()
     }
 
-    /// The recorded variables of the rows with their values, which are moved out.
+    /// The recorded variables of the particles with their values, which are moved out.
     pub fn per_particle(&mut self) -> Vec<(Variable, Values)> {
-        self.rows.take()
+        self.particles.take()
     }
 
     /// Keeps the first rows, without touching memory that was not written to.
     pub(crate) fn truncate(&mut self, rows: usize) {
-        self.events.truncate(rows);
-        self.rows.truncate(rows);
+        self.impacts.truncate(rows);
+        self.particles.truncate(rows);
         self.settled.truncate(rows);
     }
 
     /// All rows.
     pub(crate) fn block(&mut self) -> TableBlock<'_> {
         TableBlock {
-            events: self.events.rows(),
-            rows: self.rows.rows(),
+            impacts: self.impacts.rows(),
+            particles: self.particles.rows(),
             settled: &mut self.settled,
         }
     }
 
     /// Completes the table of a cancelled run quickly, however long the rows are: the columns end with the longest row, and where
-    /// blanking the rest would take long, the rows that were interrupted are left out. The first row has the number `first`.
+    /// blanking the rest would take long, the rows that were interrupted are left out. The first row is particle `first`.
     pub(crate) fn settle(&mut self, first: usize) {
         self.reached = self.longest();
         if self.missing() > MOST_BLANKED {
@@ -113,7 +108,7 @@ impl Records {
         for row in 0..self.particles() {
             if !self.settled[row] {
                 let missing = self.count(row)..self.reached;
-                self.events.rows().blank(row, missing);
+                self.impacts.rows().blank(row, missing);
             }
         }
     }
@@ -133,14 +128,14 @@ impl Records {
 
     /// Keeps the rows that finished, and records their numbers.
     fn leave_out_cut_short(&mut self, first: usize) {
-        let finished = |&row: &usize| match &self.rows.columns[1] {
-            Some(Elements::Flags(reasons)) => reasons[row] != self.interrupted,
+        let finished = |&row: &usize| match &self.particles.columns[1] {
+            Some(Elements::Flags(reasons)) => reasons[row] != StopReason::Interrupted as i8,
             _ => true,
         };
         let kept: Vec<usize> = (0..self.particles()).filter(finished).collect();
         for (place, &row) in kept.iter().enumerate() {
-            self.events.move_up(row, place, self.count(row));
-            self.rows.move_up(row, place, 1);
+            self.impacts.move_up(row, place, self.count(row));
+            self.particles.move_up(row, place, 1);
             self.settled[place] = false;
         }
         self.truncate(kept.len());
@@ -150,8 +145,8 @@ impl Records {
 
 /// Some of the rows.
 pub(crate) struct TableBlock<'a> {
-    events: TableRows<'a>,
-    rows: TableRows<'a>,
+    impacts: TableRows<'a>,
+    particles: TableRows<'a>,
     settled: &'a mut [bool],
 }
 
@@ -160,8 +155,8 @@ impl<'a> TableBlock<'a> {
     pub fn split(&mut self, rows: usize) -> Self {
         let rows = rows.min(self.settled.len());
         Self {
-            events: self.events.split(rows),
-            rows: self.rows.split(rows),
+            impacts: self.impacts.split(rows),
+            particles: self.particles.split(rows),
             settled: first(&mut self.settled, rows),
         }
     }
@@ -172,33 +167,30 @@ impl<'a> TableBlock<'a> {
     }
 }
 
-/// The sink that records the events of a block.
-pub(crate) struct Table<'a, S: Source> {
+/// The sink that records the impacts of a block.
+pub(crate) struct Table<'a> {
     block: TableBlock<'a>,
-    source: &'a S,
-    /// The number of row 0.
+    plan: &'a Plan<'a>,
+    /// The particle of row 0.
     first: usize,
 }
 
-impl<'a, S: Source> Table<'a, S> {
-    /// The rows from `first` on.
-    pub fn new(mut block: TableBlock<'a>, source: &'a S, first: usize) -> Self {
+impl<'a> Table<'a> {
+    /// The particles from `first` on.
+    pub fn new(mut block: TableBlock<'a>, runs: &'a JoinedRuns<'a>, first: usize) -> Self {
         for row in 0..block.len() {
-            let (plan, number) = source.origin(first + row);
-            S::Of::row(number).write(plan, &mut block.rows.columns, &[(0, row)]);
+            let (plan, number) = runs.origin(first + row);
+            AtRelease(number).write(plan, &mut block.particles.columns, &[(0, row)]);
         }
-        Self {
-            block,
-            source,
-            first,
-        }
+        let plan = runs.plan();
+        Self { block, plan, first }
     }
 
-    /// Blanks the cells after the last event of each row, unless the run is cancelled meanwhile.
+    /// Blanks the cells after the last impact of each row, unless the run is cancelled meanwhile.
     pub fn finish(mut self, monitor: &Monitor) {
-        let end = self.block.events.per_row;
+        let end = self.block.impacts.per_row;
         for row in 0..self.block.len() {
-            let Some(Elements::Counts(counts)) = &self.block.rows.columns[0] else {
+            let Some(Elements::Counts(counts)) = &self.block.particles.columns[0] else {
                 return;
             };
             let mut first = counts[row] as usize;
@@ -207,7 +199,7 @@ impl<'a, S: Source> Table<'a, S> {
                     return;
                 }
                 let next = end.min(first + STRIDE);
-                self.block.events.blank(row, first..next);
+                self.block.impacts.blank(row, first..next);
                 first = next;
             }
             self.block.settled[row] = true;
@@ -215,44 +207,35 @@ impl<'a, S: Source> Table<'a, S> {
     }
 }
 
-impl<S: Source> Meanwhile for Table<'_, S> {
-    const INTERLEAVED: bool = false;
+impl Meanwhile for Table<'_> {}
 
-    fn meanwhile(&mut self, _: usize) {}
-}
-
-impl<S: Source> Sink<S::Of> for Table<'_, S> {
-    fn begin(&mut self) {}
-
+impl ImpactSink for Table<'_> {
     #[inline(always)]
-    fn event<V: Simd, E: Event<V, K, Of = S::Of>, const K: usize>(&mut self, _: usize, event: &E) {
-        // Lanes and cells, of which the lanes that have no event are left out.
+    fn impact<S: Simd, P: Pose<S>>(&mut self, _: usize, impact: &Impact<S, P>) {
+        // Lanes and cells, of which the lanes that have no impact are left out.
         let mut cells = [(0, 0); LANES];
         let mut count = 0;
-        let (row, number) = event.place();
-        event.active().each(|lane| {
-            let row = row.as_slice()[lane] as usize - self.first;
-            let number = number.as_slice()[lane] as usize;
-            cells[count] = (lane, row * self.block.events.per_row + number);
+        let (particle, number) = (impact.particle.as_slice(), impact.number.as_slice());
+        impact.active.each(|lane| {
+            let row = particle[lane] as usize - self.first;
+            let cell = row * self.block.impacts.per_row + number[lane] as usize;
+            cells[count] = (lane, cell);
             count += 1;
         });
-        event.write(
-            self.source.plan(),
-            &mut self.block.events.columns,
-            &cells[..count],
-        );
+        let columns = &mut self.block.impacts.columns;
+        impact.write(self.plan, columns, &cells[..count]);
     }
 
-    fn end(&mut self, row: usize, events: usize, reason: <S::Of as Process>::Reason) {
+    fn end(&mut self, particle: usize, impacts: usize, reason: StopReason) {
         let [
             Some(Slices::Counts(counts)),
             Some(Slices::Flags(reasons)),
             ..,
-        ] = &mut self.block.rows.columns[..]
+        ] = &mut self.block.particles.columns[..]
         else {
             return;
         };
-        counts[row - self.first] = events as i64;
-        reasons[row - self.first] = <S::Of as Process>::number(reason) as i8;
+        counts[particle - self.first] = impacts as i64;
+        reasons[particle - self.first] = reason as i8;
     }
 }

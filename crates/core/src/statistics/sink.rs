@@ -1,6 +1,5 @@
-//! The sink that counts impacts for a [`Histogram`] and sums their moments.
+//! The sink that counts impacts for a [`Histogram`], and sums their moments unless they are only counted.
 
-use super::HistogramSink;
 use super::axis::Axis;
 use super::bins::{Bins, By, WHAT};
 use super::histogram::{Histogram, UNSPOILT};
@@ -12,11 +11,10 @@ use super::recent::{
 };
 use super::rows::{CREATES_ENERGY, Rows, pulling};
 use super::whole::{ROUND, whole};
-use crate::Error;
-use crate::drop::{PLACES, of_group};
+use crate::drop::{Impact, ImpactSink, Meanwhile, PLACES, Pose, of_group};
 use crate::memory::{filled, zeros};
-use crate::record::{Event, Meanwhile, Process, Sink};
 use crate::simd::{LANES, Pack};
+use crate::{Error, StopReason};
 use pulp::Simd;
 use std::ops::{IndexMut, Range};
 use std::sync::Mutex;
@@ -24,7 +22,10 @@ use std::sync::Mutex;
 /// Counts impacts in narrow integers, which are emptied before they can overflow. The bins of an impact are computed in all lanes at
 /// once and queued; the queue is counted lane by lane while other arithmetic waits for its results. Lanes without an impact, or with
 /// one that cannot be summed there, are counted in an additional site or row that is never read, so that no branch is needed.
-pub(crate) struct MomentSink<'a, const EVEN: bool> {
+///
+/// EVEN: all bins of every axis have the same width. MOMENTS: there are columns for E_rot/E_tot, and moments are summed; otherwise what
+/// is for them is empty, and only the impacts by row and ε are counted, and those that create energy.
+pub(crate) struct HistogramSink<'a, const EVEN: bool, const MOMENTS: bool> {
     /// Whose grids this counter and others fill.
     shared: &'a Mutex<Histogram>,
     /// The other sums.
@@ -50,6 +51,8 @@ pub(crate) struct MomentSink<'a, const EVEN: bool> {
 /// Impacts to be counted. Integers have [`ROUND`] added to them.
 #[repr(align(64))]
 struct Queue {
+    /// Sites in the grid of ε, of impacts that are only counted.
+    sites: [f64; PLACES],
     places: [Counted; PLACES],
     /// Contributions to the sums, in halves.
     low: [Half; PLACES],
@@ -88,7 +91,7 @@ type Counted = [f64; 4];
 
 /// Transposes four packs into one record of four numbers for each lane.
 #[inline(always)]
-fn put<S: Simd, const K: usize>(queue: &mut [[f64; 4]], packs: [Pack<S, K>; 4]) {
+fn put<S: Simd>(queue: &mut [[f64; 4]], packs: [Pack<S, 1>; 4]) {
     let records = Pack::records(packs);
     queue.copy_from_slice(pulp::bytemuck::cast_slice(&records));
 }
@@ -106,36 +109,39 @@ fn empty_row(all: &mut Rows, row: &mut Recent, number: usize) {
     };
     if let Some(sums) = all.sums.get_mut(number) {
         let totals = row.totals();
-        sums.absorb(&totals, unit);
+        sums.absorb(totals.powers, unit);
         all.fractions[number] += u128::from(totals.fractions);
         all.gains[number].count += totals.gains;
     }
 }
 
-impl<'a, const EVEN: bool> MomentSink<'a, EVEN> {
-    /// A counter without impacts, for a histogram with these bins; `fractions` is their axis of E_rot/E_tot.
+impl<'a, const EVEN: bool, const MOMENTS: bool> HistogramSink<'a, EVEN, MOMENTS> {
+    /// A counter without impacts, for a histogram with these bins; velocities are in units of `speed`, in m/s, and moments about `origin`.
     pub fn new(
         bins: &'a Bins,
-        fractions: &'a Axis,
         (speed, origin): (f64, f64),
-        reasons: usize,
         shared: &'a Mutex<Histogram>,
     ) -> Result<Self, Error> {
         let rows = bins.rows();
+        let columns = &bins.restitution;
+        // Impacts that are only counted have no bins of E_rot/E_tot, and nothing asks for any.
+        let fractions = bins.fraction.as_ref().unwrap_or(columns);
+        let summed = |size: usize| if MOMENTS { size + LANES } else { 0 };
         Ok(Self {
             shared,
-            own: Rows::new(bins, origin, reasons)?,
+            own: Rows::new(bins, origin)?,
             by: &bins.by,
-            columns: &bins.restitution,
+            columns,
             fractions,
             speed,
-            restitution: zeros(WHAT, rows * (bins.restitution.bins() + 1) + LANES)?,
-            fraction: zeros(WHAT, rows * (fractions.bins() + 1) + LANES)?,
-            rows: filled(WHAT, Recent::EMPTY, 2 * rows + LANES)?,
-            extremes: filled(WHAT, Extremes::EMPTY, 2 * rows + LANES)?,
-            largest: zeros(WHAT, 2 * rows + LANES)?,
+            restitution: zeros(WHAT, rows * (columns.bins() + 1) + LANES)?,
+            fraction: zeros(WHAT, summed(rows * (fractions.bins() + 1)))?,
+            rows: filled(WHAT, Recent::EMPTY, summed(2 * rows))?,
+            extremes: filled(WHAT, Extremes::EMPTY, summed(2 * rows))?,
+            largest: zeros(WHAT, summed(2 * rows))?,
             recently: Recently::default(),
             queue: Queue {
+                sites: [0.0; PLACES],
                 places: [[0.0; 4]; PLACES],
                 low: [[0.0; 4]; PLACES],
                 high: [[0.0; 4]; PLACES],
@@ -143,11 +149,20 @@ impl<'a, const EVEN: bool> MomentSink<'a, EVEN> {
         })
     }
 
+    /// Returns the other sums over the impacts, all of which are then in the grids.
+    pub fn finish(mut self) -> Rows {
+        self.empty();
+        self.own
+    }
+
     fn empty(&mut self) {
         let mut shared = self.shared.lock().expect(UNSPOILT);
         let numbers = &mut self.own.numbers;
         let report = |row: usize, number| numbers[row] += number;
         shared.restitution.absorb(&mut self.restitution, report);
+        if !MOMENTS {
+            return;
+        }
         shared.fraction.absorb(&mut self.fraction, |_, _| {});
         drop(shared);
         for (number, row) in self.rows.iter_mut().enumerate() {
@@ -171,11 +186,15 @@ impl<'a, const EVEN: bool> MomentSink<'a, EVEN> {
     }
 }
 
-impl<const EVEN: bool> Meanwhile for MomentSink<'_, EVEN> {
+impl<const EVEN: bool, const MOMENTS: bool> Meanwhile for HistogramSink<'_, EVEN, MOMENTS> {
     const INTERLEAVED: bool = true;
 
     #[inline(always)]
     fn meanwhile(&mut self, place: usize) {
+        if !MOMENTS {
+            self.restitution[whole(self.queue.sites[place])] += 1;
+            return;
+        }
         let (grids, rows) = (
             (&mut self.restitution, &mut self.fraction),
             (&mut self.rows, &mut self.extremes),
@@ -189,6 +208,10 @@ impl<const EVEN: bool> Meanwhile for MomentSink<'_, EVEN> {
         let (restitution, fraction) = (&mut self.restitution[..], &mut self.fraction[..]);
         let (rows, extremes) = (&mut self.rows[..], &mut self.extremes[..]);
         for place in places {
+            if !MOMENTS {
+                restitution[whole(self.queue.sites[place])] += 1;
+                continue;
+            }
             let (grids, rows) = (
                 (&mut *restitution, &mut *fraction),
                 (&mut *rows, &mut *extremes),
@@ -198,53 +221,81 @@ impl<const EVEN: bool> Meanwhile for MomentSink<'_, EVEN> {
     }
 }
 
-impl<P: Process, const EVEN: bool> Sink<P> for MomentSink<'_, EVEN> {
+impl<const EVEN: bool, const MOMENTS: bool> ImpactSink for HistogramSink<'_, EVEN, MOMENTS> {
     fn begin(&mut self) {
-        let nowhere = [
-            last(&self.restitution),
-            last(&self.fraction),
-            last(&self.rows),
-            0.0,
-        ];
-        self.queue.places.fill(nowhere);
+        self.queue.sites.fill(last(&self.restitution));
+        if MOMENTS {
+            let nowhere = [
+                last(&self.restitution),
+                last(&self.fraction),
+                last(&self.rows),
+                0.0,
+            ];
+            self.queue.places.fill(nowhere);
+        }
     }
 
     #[inline(always)]
-    fn event<S: Simd, E: Event<S, K, Of = P>, const K: usize>(&mut self, group: usize, event: &E) {
-        let width = Pack::<S, K>::WIDTH;
+    fn impact<S: Simd, P: Pose<S>>(&mut self, group: usize, impact: &Impact<S, P>) {
+        let width = Pack::<S, 1>::WIDTH;
         if self.recently.add(width) {
             self.empty();
         }
-        let lanes = of_group::<S, K>(group);
-        let ((_, number), active) = (event.place(), event.active());
+        let lanes = of_group::<S>(group);
+        let (number, active) = (impact.number, impact.active);
         let simd = number.simd();
-        let restitution = event.restitution();
-        let fraction = event.rotational_fraction();
+        let restitution = impact.restitution();
+        let fraction = impact.rotational_fraction();
         let (columns, fractions) = (self.columns, self.fractions);
         let (row, column, fraction_column) = match self.by {
-            By::Velocity(axis) => {
-                let velocity = event.velocity() * self.speed;
-                let located = Axis::locate::<S, K, _, EVEN>(
+            By::Velocity(axis) if MOMENTS => {
+                let velocity = impact.fall * self.speed;
+                let located = Axis::locate::<S, _, EVEN>(
                     [axis, columns, fractions],
                     [velocity, restitution, fraction],
                 );
                 (located[0], located[1], located[2])
             }
-            By::Number(_) => {
-                let row = number + ROUND;
+            By::Velocity(axis) => {
+                let velocity = impact.fall * self.speed;
+                let located = Axis::locate::<S, _, EVEN>([axis, columns], [velocity, restitution]);
+                (located[0], located[1], fraction)
+            }
+            By::Number(_) if MOMENTS => {
                 let located =
-                    Axis::locate::<S, K, _, EVEN>([columns, fractions], [restitution, fraction]);
-                (row, located[0], located[1])
+                    Axis::locate::<S, _, EVEN>([columns, fractions], [restitution, fraction]);
+                (number + ROUND, located[0], located[1])
+            }
+            By::Number(_) => {
+                let [column] = Axis::locate::<S, _, EVEN>([columns], [restitution]);
+                (number + ROUND, column, fraction)
             }
         };
-        let [before, after] = event.energies();
-        let gaining = active & (before * CREATES_ENERGY).lt(after);
-        let pulling = active & pulling(event.velocity(), restitution);
+        let gaining = active & (impact.energy_before * CREATES_ENERGY).lt(impact.energy_after);
+        let pulling = active & pulling(impact.fall, restitution);
         if pulling.any() {
             pulling.each(|_| self.own.pulls += 1);
         }
-        let offset = restitution - self.own.origin;
         let start = row - ROUND;
+        if !MOMENTS {
+            let defined = restitution.abs().lt(Sums::LARGEST);
+            let site = if (active & defined).all() {
+                sites(columns, start, column)
+            } else {
+                let grid = (columns, &self.restitution[..]);
+                all_sites(grid, start, column, defined, active)
+            };
+            self.queue.sites[lanes].copy_from_slice(site.as_slice());
+            if gaining.any() {
+                let ratio = impact.energy_ratio();
+                gaining.each(|lane| {
+                    let row = whole(row.as_slice()[lane]);
+                    self.own.gains[row].add(ratio.as_slice()[lane]);
+                });
+            }
+            return;
+        }
+        let offset = restitution - self.own.origin;
         let mut site = sites(columns, start, column);
         let mut fraction_site = sites(fractions, start, fraction_column);
         let (mut summed_row, mut unit) = (row, Pack::splat(simd, QUANTA));
@@ -277,7 +328,7 @@ impl<P: Process, const EVEN: bool> Sink<P> for MomentSink<'_, EVEN> {
         put(&mut queue.low[lanes.clone()], low);
         put(&mut queue.high[lanes], high);
         if gaining.any() {
-            let ratio = gaining.select(event.energy_ratio(), 0.0);
+            let ratio = gaining.select(impact.energy_ratio(), 0.0);
             let row = gaining.select(row, nowhere(simd, &self.largest));
             for lane in 0..width {
                 let largest = &mut self.largest[whole(row.as_slice()[lane])];
@@ -289,14 +340,7 @@ impl<P: Process, const EVEN: bool> Sink<P> for MomentSink<'_, EVEN> {
         }
     }
 
-    fn end(&mut self, _: usize, _: usize, reason: P::Reason) {
-        self.own.stops[P::number(reason)] += 1;
-    }
-}
-
-impl<P: Process, const EVEN: bool> HistogramSink<P> for MomentSink<'_, EVEN> {
-    fn finish(mut self) -> Rows {
-        self.empty();
-        self.own
+    fn end(&mut self, _: usize, _: usize, reason: StopReason) {
+        self.own.stops[reason as usize] += 1;
     }
 }
