@@ -94,9 +94,11 @@ fn ended<T>(
             .unwrap_or("no message");
         PyRuntimeError::new_err(format!("the core panicked: {message}"))
     })?;
+    let from_keyboard =
+        |error: &PyErr| Python::attach(|py| error.is_instance_of::<PyKeyboardInterrupt>(py));
     match (result, interrupt) {
         (Err(_), Some(error)) => Err(error),
-        (_, Some(error)) if !is_keyboard_interrupt(&error) => Err(error),
+        (_, Some(error)) if !from_keyboard(&error) => Err(error),
         (result, interrupt) => Ok((result.map_err(python_error)?, interrupt)),
     }
 }
@@ -109,8 +111,4 @@ fn attend(monitor: &Monitor, progress: Option<&Py<PyAny>>) -> PyResult<()> {
         }
         Ok(())
     })
-}
-
-fn is_keyboard_interrupt(error: &PyErr) -> bool {
-    Python::attach(|py| error.is_instance_of::<PyKeyboardInterrupt>(py))
 }

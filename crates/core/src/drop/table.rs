@@ -5,9 +5,7 @@ use super::recorded::{AtRelease, PER_IMPACT, PER_PARTICLE};
 use super::{JoinedRuns, Plan, StopReason};
 use crate::Error;
 use crate::memory::zeros;
-use crate::record::{
-    Columns, Elements, ROOM, Slices, TableColumns, TableRows, Values, Variable, first,
-};
+use crate::record::{Columns, Elements, ROOM, Slices, TableColumns, TableRows, Values, Variable};
 use crate::simd::LANES;
 use crate::threads::Monitor;
 use pulp::Simd;
@@ -157,7 +155,7 @@ impl<'a> TableBlock<'a> {
         Self {
             impacts: self.impacts.split(rows),
             particles: self.particles.split(rows),
-            settled: first(&mut self.settled, rows),
+            settled: self.settled.split_off_mut(..rows).unwrap_or_default(),
         }
     }
 

@@ -244,7 +244,7 @@ impl<'a> TableRows<'a> {
     pub fn split(&mut self, rows: usize) -> Self {
         let part = |(about, column): (&Variable, &mut Option<Slices<'a>>)| {
             let size = rows * self.per_row * about.width();
-            Some(each!(column.as_mut()?, these => first(these, size)))
+            Some(each!(column.as_mut()?, these => these.split_off_mut(..size)?))
         };
         Self {
             all: self.all,
@@ -269,11 +269,4 @@ impl<'a> TableRows<'a> {
             }
         }
     }
-}
-
-/// Splits off the first cells of a slice.
-pub(crate) fn first<'a, T>(slice: &mut &'a mut [T], cells: usize) -> &'a mut [T] {
-    let (first, rest) = std::mem::take(slice).split_at_mut(cells);
-    *slice = rest;
-    first
 }

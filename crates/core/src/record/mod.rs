@@ -4,5 +4,5 @@ mod column;
 mod variable;
 
 pub use column::{Columns, Values};
-pub(crate) use column::{InLanes, ROOM, Slices, Stored, TableColumns, TableRows, first};
+pub(crate) use column::{InLanes, ROOM, Slices, Stored, TableColumns, TableRows};
 pub use variable::{Element, Elements, Variable, When};
