@@ -15,9 +15,9 @@ __all__ = [
     "MOST_RADIANS",
     "ORIENTATIONS",
     "PADE",
+    "PAIR_CONTACT",
     "PAIR_ENCOUNTER",
     "PAIR_ENDINGS",
-    "PAIR_HIT",
     "PULLS",
     "STOP_REASONS",
     "Counter",
@@ -61,8 +61,8 @@ BODIES: list[dict[str, Any]]
 LAWS: list[dict[str, Any]]
 MATERIALS: list[dict[str, Any]]
 STOP_REASONS: list[str]
-PAIR_ENCOUNTER: list[tuple[str, str, str, int, bool]]
-PAIR_HIT: list[tuple[str, str, str, int, bool]]
+PAIR_CONTACT: dict[str, int]
+PAIR_ENCOUNTER: dict[str, int]
 PAIR_ENDINGS: list[str]
 
 MOST_FRICTION: float
@@ -275,4 +275,4 @@ def encounters(
     wanted: tuple[bool, bool],
     threads: int,
     progress: Callable[[int], None] | None,
-) -> tuple[list[npt.NDArray[np.float64]], list[npt.NDArray[np.float64]], float, KeyboardInterrupt | None]: ...
+) -> tuple[list[_Table], float, KeyboardInterrupt | None]: ...

@@ -123,8 +123,8 @@ fn cool<'py>(
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add("GAS_WHOLE", GAS_WHOLE.map(|(name, ..)| name))?;
-    module.add("GAS_KIND", GAS_KIND.map(|(name, ..)| name))?;
+    module.add("GAS_WHOLE", GAS_WHOLE)?;
+    module.add("GAS_KIND", GAS_KIND)?;
     module.add("GAS_BINS", (BINS, BIN))?;
     module.add_function(wrap_pyfunction!(cool, module)?)
 }

@@ -3,13 +3,15 @@
 use crate::bodies::Dropped;
 use crate::errors::python_error;
 use crate::laws::Law;
+use crate::records::variable;
 use crate::{resources, watch};
-use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict};
 use restitution_core::pair::{
-    ENCOUNTER, Encounters, Ending, HIT, Meeting, PairState, PairVariable, Partner, width,
+    Encounters, Ending, Meeting, PER_CONTACT, PER_ENCOUNTER, PairState, Partner,
 };
-use restitution_core::{Quaternion, Vector};
+use restitution_core::{Quaternion, Values, Variable, Vector};
 
 /// The pairs to draw: temperatures of translation, or a relative speed; impact parameter, temperatures of rotation or ω.
 #[derive(FromPyObject)]
@@ -55,10 +57,9 @@ fn partners(body: &Dropped<'_>, other: Option<&Dropped<'_>>) -> PyResult<[Partne
     Ok([body, other])
 }
 
-type Columns<'py> = Vec<Bound<'py, PyArray2<f64>>>;
-
-/// Follows encounters, drawn or given as rows of position, velocity, ω and attitude of each body. Returns columns of `PAIR_ENCOUNTER`, those of the states if
-/// they are asked for, and of `PAIR_HIT` if contacts are, the rate of attempts, and the `KeyboardInterrupt` that cut the run short, if any.
+/// Follows encounters, drawn or given as rows of position, velocity, ω and attitude of each body. Returns by name the variables of the encounters, those of the
+/// states if they are asked for, and of the contacts, one after the other, if these are; the rate of attempts; and the `KeyboardInterrupt` that cut the run short,
+/// if any.
 #[pyfunction]
 #[pyo3(signature = (body, other, law, drawn, given, wanted, threads, progress))]
 #[expect(clippy::too_many_arguments, reason = "one call from Python")]
@@ -72,7 +73,7 @@ fn encounters<'py>(
     wanted: [bool; 2],
     threads: usize,
     progress: Option<Bound<'py, PyAny>>,
-) -> PyResult<(Columns<'py>, Columns<'py>, f64, Option<PyErr>)> {
+) -> PyResult<([Bound<'py, PyDict>; 2], f64, Option<PyErr>)> {
     let [one, two] = partners(&body, other.as_ref())?;
     let run = drawn.of([&one, &two]);
     let resources = resources(threads)?;
@@ -81,31 +82,22 @@ fn encounters<'py>(
         None => None,
     };
     let law = law.law();
-    let (table, interrupted) = watch::run(py, progress, |monitor| {
+    let (mut table, interrupted) = watch::run(py, progress, |monitor| {
         run.record(&law, given.as_deref(), wanted, resources, monitor)
     })?;
-    let shaped = |(values, variable): (Vec<f64>, &PairVariable)| {
-        let width = width(variable);
-        let rows = values.len() / width;
-        values.into_pyarray(py).reshape([rows, width])
-    };
-    let hits = table.hits.chunks(HIT.iter().map(width).sum());
-    let mut contacts = vec![Vec::new(); HIT.len()];
-    for mut row in hits {
-        for (column, variable) in contacts.iter_mut().zip(HIT) {
-            let (own, rest) = row.split_at(width(variable));
-            column.extend_from_slice(own);
-            row = rest;
+    let named = |dimensions, columns: Vec<(Variable, Values)>| {
+        let table = PyDict::new(py);
+        for (about, values) in columns {
+            table.set_item(about.name, variable(py, &about, &[dimensions], values)?)?;
         }
-    }
-    let columns = table.encounters.into_iter().zip(ENCOUNTER).map(shaped);
+        PyResult::Ok(table)
+    };
+    let contacts = table.per_contact().map_err(python_error)?;
     Ok((
-        columns.collect::<PyResult<_>>()?,
-        contacts
-            .into_iter()
-            .zip(HIT)
-            .map(shaped)
-            .collect::<PyResult<_>>()?,
+        [
+            named(("encounter", run.count), table.per_encounter())?,
+            named(("contact", table.hits.len()), contacts)?,
+        ],
         run.attempt_rate(),
         interrupted,
     ))
@@ -125,8 +117,19 @@ fn state(row: &[f64; 26]) -> [PairState; 2] {
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add("PAIR_ENCOUNTER", ENCOUNTER.to_vec())?;
-    module.add("PAIR_HIT", HIT.to_vec())?;
+    let bytes = |all: &[Variable]| -> Vec<_> {
+        all.iter()
+            .map(|about| (about.name, about.bytes()))
+            .collect()
+    };
+    module.add(
+        "PAIR_ENCOUNTER",
+        bytes(PER_ENCOUNTER).into_py_dict(module.py())?,
+    )?;
+    module.add(
+        "PAIR_CONTACT",
+        bytes(PER_CONTACT).into_py_dict(module.py())?,
+    )?;
     module.add("PAIR_ENDINGS", Ending::NAMES)?;
     module.add_function(wrap_pyfunction!(encounters, module)?)
 }

@@ -103,13 +103,16 @@ fn bytes_per_impact(columns: Vec<String>) -> PyResult<usize> {
 }
 
 /// Dimensions, values and attributes, named according to the CF conventions.
-fn variable<'py>(
+pub fn variable<'py>(
     py: Python<'py>,
     about: &Variable,
     dimensions: &[(&str, usize)],
     values: Values,
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyAny>, Bound<'py, PyDict>)> {
     let mut dimensions = dimensions.to_vec();
+    if about.each {
+        dimensions.push(("particle", 2));
+    }
     match about.components.len() {
         0 => {}
         3 => dimensions.push(("component", 3)),

@@ -49,8 +49,8 @@ pub fn cool(run: &Run<'_>, start: &[f64; NUMBERS], states: &[f64]) -> Result<Vec
     let mut made = drawn_as(&body);
     for row in rows.chunks(GAS_WHOLE.len() + GAS_KIND.len()) {
         let (whole, kind) = row.split_at(GAS_WHOLE.len());
-        let mean = |name| kind[GAS_KIND.iter().position(|x| x.0 == name).expect("a name")];
-        let count = |name| whole[GAS_WHOLE.iter().position(|x| x.0 == name).expect("a name")];
+        let mean = |name| kind[GAS_KIND.iter().position(|x| *x == name).expect("a name")];
+        let count = |name| whole[GAS_WHOLE.iter().position(|x| *x == name).expect("a name")];
         let parts = ["rotational_x", "rotational_y", "rotational_z"].map(mean);
         let own = parts.into_iter().zip(turned).filter(|&(_, turned)| turned);
         let axes = own.clone().count() as f64;

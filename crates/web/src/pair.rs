@@ -1,9 +1,8 @@
 //! Encounters of two bodies of the kind of a run, under its law and with its seed, in SI units.
 
 use crate::records::here;
-use crate::rigid::vector;
-use restitution_core::pair::{Encounters, HIT, Meeting, PairState, PairTable, Partner, width};
-use restitution_core::{Error, Monitor, Quaternion, Run, Vector};
+use restitution_core::pair::{Encounters, Meeting, PairState, PairTable, Partner};
+use restitution_core::{Error, Monitor, Run, Vector};
 use std::ops::Range;
 
 /// The way in which they meet, as `web/src/engine/layout.ts` writes it: 0 for two Maxwellians, 1 for what is given; √(T_tr/m) and T_rot/T_tr; the relative
@@ -29,20 +28,28 @@ const SHOWN: [&str; 8] = [
 pub fn meet(run: &Run<'_>, pairs: &[f64; NUMBERS], number: usize) -> Result<Vec<f64>, Error> {
     let body = Partner::new("shape", run.body)?;
     let table = follow(run, &body, pairs, number..number + 1, true)?;
-    let mut made: Vec<f64> = SHOWN.map(|name| table.of(name, 0)[0]).to_vec();
+    let mut made: Vec<f64> = SHOWN.map(|name| table.numbers(name)[0]).to_vec();
     made.extend(drawn_as(&body));
-    let mut states = [0, 1].map(|i| before(&table, 0, i));
+    let mut states = table.states("before")[0];
     let mut clock = 0.0;
     made.extend(flight(&body, clock, &states));
-    for hit in table.hits.chunks(HIT.iter().map(width).sum()) {
-        let [point, impulse] = [4, 7].map(|at| vector(hit[at..].first_chunk().expect("a vector")));
+    for hit in &table.hits {
         for (state, sign) in states.iter_mut().zip([1.0, -1.0]) {
-            *state = body.struck(&body.later(state, hit[0] - clock), point, impulse * sign);
+            let later = body.later(state, hit.time - clock);
+            *state = body.struck(&later, hit.point, hit.impulse * sign);
         }
-        clock = hit[0];
+        clock = hit.time;
         made.extend(flight(&body, clock, &states));
     }
-    made.extend(&table.hits);
+    for hit in &table.hits {
+        made.push(hit.time);
+        made.extend(
+            [hit.normal, hit.point, hit.impulse]
+                .map(Vector::parts)
+                .as_flattened(),
+        );
+        made.extend(hit.speeds);
+    }
     Ok(made)
 }
 
@@ -63,9 +70,9 @@ pub fn survey(
 ) -> Result<Vec<f64>, Error> {
     let body = Partner::new("shape", run.body)?;
     let table = follow(run, &body, pairs, first..first + count, false)?;
-    let shown = ["contacts", "ending", "restitution_energy"];
+    let shown = ["contacts", "ending", "restitution_energy"].map(|name| table.numbers(name));
     Ok((0..count)
-        .flat_map(|number| shown.map(|name| table.of(name, number)[0]))
+        .flat_map(|number| shown.each_ref().map(|column| column[number]))
         .collect())
 }
 
@@ -104,33 +111,15 @@ fn follow(
     if !given {
         return record(None, contacts);
     }
-    let drawn = record(None, false)?;
-    let states: Vec<_> = (0..encounters.count)
-        .map(|number| {
-            let mut states = [0, 1].map(|i| before(&drawn, number, i));
-            let [a, b] = &states;
-            let normal = (a.position - b.position).cross(a.velocity - b.velocity);
-            for (state, spin) in states.iter_mut().zip([one, two]) {
-                state.spin = normal * (spin / normal.norm());
-            }
-            states
-        })
-        .collect();
-    record(Some(&states), contacts)
-}
-
-/// A body at the beginning.
-fn before(table: &PairTable, number: usize, body: usize) -> PairState {
-    let of = |name| table.of(name, number).as_chunks().0[body];
-    let &[w, x, y, z] = table.of("attitude_before", number)[4 * body..]
-        .first_chunk()
-        .expect("an attitude");
-    PairState {
-        position: vector(&of("position_before")),
-        velocity: vector(&of("velocity_before")),
-        attitude: Quaternion::new(w, x, y, z),
-        spin: vector(&of("angular_velocity_before")),
+    let mut drawn = record(None, false)?.states("before");
+    for states in &mut drawn {
+        let [a, b] = &*states;
+        let normal = (a.position - b.position).cross(a.velocity - b.velocity);
+        for (state, spin) in states.iter_mut().zip([one, two]) {
+            state.spin = normal * (spin / normal.norm());
+        }
     }
+    record(Some(&drawn), contacts)
 }
 
 fn flight(body: &Partner, start: f64, states: &[PairState; 2]) -> Vec<f64> {

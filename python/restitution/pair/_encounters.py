@@ -20,16 +20,16 @@ from restitution.laws import CollisionLaw
 from restitution.pair.materials import between
 from restitution.pair.states import read_states
 
-Columns: TypeAlias = dict[str, FloatArray]
+Columns: TypeAlias = dict[str, npt.NDArray[Any]]
 """Variables by their names."""
+Table: TypeAlias = dict[str, tuple[tuple[str, ...], npt.NDArray[Any], dict[str, Any]]]
+"""The same with their dimensions and attributes."""
 Record: TypeAlias = Literal["encounters", "state", "contacts"]
 _STATE = {"position": 3, "velocity": 3, "angular_velocity": 3, "attitude": 4}
 _ENDINGS: list[str] = _core.PAIR_ENDINGS
 COLLAPSE, LASTED = _ENDINGS.index("collapse"), _ENDINGS.index("lasted")
 _CHUNK = 1 << 16
 """Encounters that are held at a time where there may be many."""
-WIDTH = sum(parts * (1 + each) for *_, parts, each in _core.PAIR_ENCOUNTER)
-"""Numbers that are recorded of an encounter."""
 
 
 class Plane(Parameters):
@@ -126,12 +126,14 @@ class Pairs:
         count = self.drawn["encounters"]
         for first in range(0, count, _CHUNK):
             self.drawn.update(first=first, encounters=min(_CHUNK, count - first))
-            yield self.follow(None, (states, contacts), threads)
+            *tables, rate = self.follow(None, (states, contacts), threads)
+            found, hits = ({name: values for name, (_, values, _) in table.items()} for table in tables)
+            yield found, hits, rate
 
     def follow(
         self, given: FloatArray | None, wanted: tuple[bool, bool], threads: int, progress: Any = None
-    ) -> tuple[Columns, Columns, float]:
-        """Follow them; variables of encounters and of contacts by their names, and the rate of attempts.
+    ) -> tuple[Table, Table, float]:
+        """Follow them; variables of encounters, of contacts one after the other, and the rate of attempts.
 
         Places and attitudes are among them if the first of `wanted` is true, contacts if the second is.
         """
@@ -140,7 +142,7 @@ class Pairs:
         if not isinstance(self.other, Plane):
             law = between(law, self.other.mass / self.body.mass)
         try:
-            found, hits, rate, interrupted = _core.encounters(
+            (found, hits), rate, interrupted = _core.encounters(
                 self.body.compiled, other, law.compiled, self.drawn, given, wanted, threads, progress
             )
         except _core.ParameterError as error:
@@ -149,7 +151,7 @@ class Pairs:
             raise ParameterError(wrong(error.name, value, error.allowed)) from None
         if interrupted:
             raise interrupted
-        return _named(_core.PAIR_ENCOUNTER, found), _named(_core.PAIR_HIT, hits), rate
+        return found, hits, rate
 
 
 def check_kinds(body: object, other: object, law: object) -> None:
@@ -316,7 +318,7 @@ def encounters(
         drawn |= {"rotational_temperature": (0.0, 0.0), "seed": whole("seed", seed, 0, 2**64 - 1)}
         pairs = Pairs(body, other, law, drawn)
     count = pairs.drawn["encounters"]
-    check_size("encounters", count, count, 16 * WIDTH, "encounters")
+    check_size("encounters", count, count, 2 * sum(_core.PAIR_ENCOUNTER.values()), "encounters")
     with progress_bar("encounters", count, "encounters", show=progress) as tell:
         wanted = (states is not None or record != "encounters", record == "contacts")
         found, hits, rate = pairs.follow(rows, wanted, number, tell)
@@ -357,43 +359,16 @@ def _rows(states: xr.Dataset, *, plane: bool) -> FloatArray:
     return np.ascontiguousarray(np.concatenate(columns, axis=-1).reshape(len(columns[0]), -1))
 
 
-def _named(table: list[tuple[str, str, str, int, bool]], arrays: list[FloatArray]) -> Columns:
-    """Give variables their names and shapes (rows, particle, component), or fewer dimensions."""
-    found = {}
-    for (name, _, _, parts, each), values in zip(table, arrays, strict=False):
-        shape = (len(values), *((2,) if each else ()), *((parts,) if parts > 1 else ()))
-        found[name] = values.reshape(shape)
-    return found
-
-
-def _described(table: list[tuple[str, str, str, int, bool]], name: str) -> dict[str, Any]:
-    text, unit = next((text, unit) for own, text, unit, _, _ in table if own == name)
-    return {"long_name": text} | ({"units": unit} if unit else {})
-
-
-def _dataset(found: Columns, hits: Columns | None) -> xr.Dataset:
-    """Give the variables of the core dimensions and units."""
-    variables: dict[str, Any] = {}
-    for name, values in found.items():
-        about = _described(_core.PAIR_ENCOUNTER, name)
-        kind: type = {"contacts": np.int64, "ending": np.int8}.get(name, np.float64)
-        if name == "ending":
-            about |= {
-                "flag_values": np.arange(len(_ENDINGS), dtype=np.int8),
-                "flag_meanings": " ".join(_ENDINGS),
-            }
-        last = "quaternion" if name.startswith("attitude") else "component"
-        dims = ["encounter", "particle", last][: values.ndim]
-        variables[name] = (dims, values.astype(kind, copy=False), about)
+def _dataset(found: Table, hits: Table | None) -> xr.Dataset:
+    """Put the variables of the contacts into rows of their encounters."""
+    variables = dict(found)
     if hits is not None:
-        number = variables["contacts"][1]
-        most = int(number.max(initial=0))
-        there = np.arange(most) < number[:, np.newaxis]
-        for name, values in hits.items():
-            table = np.full((len(number), most, *values.shape[1:]), np.nan)
+        number = found["contacts"][1]
+        there = np.arange(number.max(initial=0)) < number[:, np.newaxis]
+        for name, (dims, values, about) in hits.items():
+            table = np.full((*there.shape, *values.shape[1:]), np.nan)
             table[there] = values
-            dims = ["encounter", "contact", "component"][: table.ndim]
-            variables[name] = (dims, table, _described(_core.PAIR_HIT, name))
+            variables[name] = (("encounter", *dims), table, about)
     coordinates: dict[str, Any] = {"component": ["x", "y", "z"]}
     if "attitude_before" in found:
         coordinates["quaternion"] = ["w", "x", "y", "z"]

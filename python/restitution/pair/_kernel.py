@@ -342,7 +342,7 @@ def _resolved(u: FloatArray, k: FloatArray) -> tuple[FloatArray, FloatArray, Flo
 def _kept(each: Columns, hits: Columns, place: int, *, plane: bool) -> tuple[dict[str, Any], tuple[int, int]]:
     """Return what is kept of encounters with contact, and the numbers of those that collapsed or recede."""
     times = hits["time"]
-    contacts = each["contacts"].astype(np.int64)
+    contacts = each["contacts"]
     starts = np.cumsum(contacts) - contacts
     collapsed = each["ending"] == COLLAPSE
     good = (contacts > 0) & ~collapsed

@@ -2,7 +2,7 @@
 
 use super::{Height, Impact, Plan, Pose, StopReason};
 use crate::law::{Law, Normal};
-use crate::record::{Columns, InLanes, Slices, Stored, Variable, When};
+use crate::record::{Columns, When, variables};
 use crate::shape::AnyBody;
 use crate::simd::elementary::{angle, angle_in_lanes};
 use pulp::Simd;
@@ -44,54 +44,9 @@ impl Columns {
 /// A particle of this number, at its release.
 pub(super) struct AtRelease(pub usize);
 
-/// Tabulates the variables of an impact or a particle. A line is `name: type { metadata } = |it, plan| value`; choice, storage, blanks, the
-/// binding and the Dataset follow from it.
-macro_rules! variables {
-    (
-        $(#[$doc:meta])* $all:ident: [$($generic:tt)*] $described:ty;
-        $($name:ident: $kind:ty { $($about:tt)* } = |$it:pat_param, $plan:pat_param| $value:expr;)*
-    ) => {
-        $(#[$doc])*
-        pub const $all: &[Variable] = &[$(
-            Variable {
-                key: stringify!($name),
-                components: <$kind as Stored>::COMPONENTS,
-                kind: <$kind as Stored>::KIND,
-                ..variables!(@named $name $($about)*)
-            }
-        ),*];
-
-        impl<$($generic)*> $described {
-            /// Writes the chosen variables into cells, pairs of a lane and a cell.
-            #[inline(always)]
-            pub(super) fn write(
-                &self,
-                plan: &Plan<'_>,
-                columns: &mut [Option<Slices<'_>>],
-                cells: &[(usize, usize)],
-            ) {
-                let mut columns = columns.iter_mut();
-                $(if let Some(Some(column)) = columns.next() {
-                    let ($it, $plan) = (self, plan);
-                    let values = $value;
-                    <$kind as Stored>::put(column, cells, |lane| {
-                        InLanes::<$kind>::lane(&values, lane)
-                    });
-                })*
-            }
-        }
-    };
-    (@named $name:ident name: $given:expr, $($about:tt)*) => {
-        Variable { name: $given, $($about)*, ..Variable::PLAIN }
-    };
-    (@named $name:ident $($about:tt)*) => {
-        Variable { name: stringify!($name), $($about)*, ..Variable::PLAIN }
-    };
-}
-
 variables! {
     /// The variables of a particle; [`Variable::when`] says in which runs each is recorded.
-    PER_PARTICLE: [] AtRelease;
+    PER_PARTICLE: [] AtRelease, Plan<'_>;
 
     impacts: i64 { text: "number of impacts" } = |_, _| 0_i64;
 
@@ -147,7 +102,7 @@ variables! {
 
 variables! {
     /// The variables of an impact.
-    PER_IMPACT: [S: Simd, P: Pose<S>] Impact<S, P>;
+    PER_IMPACT: [S: Simd, P: Pose<S>] Impact<S, P>, Plan<'_>;
 
     time: f64 { text: "time since release", unit: Some("s") } = |impact, plan| impact.time * plan.scales.time;
 

@@ -5,11 +5,13 @@ use super::recorded::{AtRelease, PER_IMPACT, PER_PARTICLE};
 use super::{JoinedRuns, Plan, StopReason};
 use crate::Error;
 use crate::memory::zeros;
-use crate::record::{Columns, Elements, ROOM, Slices, TableColumns, TableRows, Values, Variable};
+use crate::record::{Columns, Elements, Slices, TableColumns, TableRows, Values, Variable};
 use crate::simd::LANES;
 use crate::threads::Monitor;
 use pulp::Simd;
 
+/// The parameters that the size of a table follows from.
+const ROOM: &str = "particles * impacts";
 /// Largest number of cells that are blanked after a cancellation, which takes some tenths of a second.
 const MOST_BLANKED: usize = 1 << 22;
 /// Number of cells that are blanked between two checks for a cancellation.
@@ -35,8 +37,8 @@ impl Records {
     pub(crate) fn new(plan: &Plan<'_>, particles: usize, chosen: &Columns) -> Result<Self, Error> {
         let (most, known) = (plan.run.impacts, Columns::of_particles(plan));
         Ok(Self {
-            impacts: TableColumns::new(PER_IMPACT, chosen, particles, most)?,
-            particles: TableColumns::new(PER_PARTICLE, &known, particles, 1)?,
+            impacts: TableColumns::new(ROOM, PER_IMPACT, chosen, particles, most)?,
+            particles: TableColumns::new(ROOM, PER_PARTICLE, &known, particles, 1)?,
             reached: most,
             particle: Vec::new(),
             settled: zeros(ROOM, particles)?,
@@ -58,15 +60,10 @@ impl Records {
 
     /// A copy of the values of a variable as numbers, row by row; none if it was not recorded.
     pub fn numbers(&self, name: &str) -> Vec<f64> {
-        let grids = [&self.impacts, &self.particles].into_iter();
-        let mut known = grids.flat_map(|grid| grid.all.iter().zip(&grid.columns));
-        match known.find_map(|(about, values)| values.as_ref().filter(|_| about.name == name)) {
-            Some(Elements::Numbers(values)) => values.clone(),
-            Some(Elements::Flags(values)) => values.iter().copied().map(f64::from).collect(),
-            Some(Elements::Parts(values)) => values.iter().copied().map(f64::from).collect(),
-            Some(Elements::Counts(values)) => values.iter().map(|&count| count as f64).collect(),
-            None => Vec::new(),
-        }
+        let impacts = self.impacts.numbers(name);
+        impacts
+            .or_else(|| self.particles.numbers(name))
+            .unwrap_or_default()
     }
 
     /// The recorded variables of the impacts with their values, which are moved out.

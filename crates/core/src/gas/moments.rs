@@ -4,62 +4,36 @@ use super::Species;
 use crate::math::Vector;
 use crate::pair::{FreeBody, PairState};
 
-/// Columns of a look at a gas: name, unit and text.
-pub const GAS_WHOLE: [(&str, &str, &str); 10] = [
-    ("time", "s", "time"),
-    (
-        "attempts",
-        "1",
-        "pairs that came so near that they could touch",
-    ),
-    ("collisions", "1", "encounters with contact"),
-    ("contacts", "1", "contacts"),
-    ("collapses", "1", "encounters that ended as a collapse"),
-    ("creating", "1", "encounters that created energy"),
-    ("created_energy", "J", "energy that these created"),
-    ("steps", "1", "times at which pairs were looked at"),
-    ("beyond", "1", "candidates faster than the majorant"),
-    (
-        "exponent",
-        "1",
-        "power of two by which the velocities of what follows are too large",
-    ),
+/// Columns of a look at a gas, in SI units: pairs within reach of each other, encounters with contact, their contacts, those that ended as a collapse and
+/// those that created energy, and how much; looks at pairs; candidates faster than the majorant; the power of two by which velocities are too large.
+pub const GAS_WHOLE: [&str; 10] = [
+    "time",
+    "attempts",
+    "collisions",
+    "contacts",
+    "collapses",
+    "creating",
+    "created_energy",
+    "steps",
+    "beyond",
+    "exponent",
 ];
 
-/// Columns of a kind of bodies.
-pub const GAS_KIND: [(&str, &str, &str); 12] = [
-    ("speed_squared", "m2 s-2", "⟨v²⟩"),
-    ("speed_fourth", "m4 s-4", "⟨v⁴⟩"),
-    (
-        "rotational_x",
-        "J",
-        "mean energy of rotation about the first principal axis",
-    ),
-    ("rotational_y", "J", "about the second"),
-    ("rotational_z", "J", "about the third"),
-    (
-        "rotational_squared",
-        "J2",
-        "mean square of the energy of rotation",
-    ),
-    (
-        "mixed",
-        "J m2 s-2",
-        "mean of v² times the energy of rotation",
-    ),
-    (
-        "cos2_velocity_spin",
-        "1",
-        "⟨cos²⟩ of the angle between v and ω",
-    ),
-    (
-        "cos2_velocity_axis",
-        "1",
-        "⟨cos²⟩ of the angle between v and the third axis of the body",
-    ),
-    ("momentum_x", "m s-1", "mean velocity along x"),
-    ("momentum_y", "m s-1", "mean velocity along y"),
-    ("momentum_z", "m s-1", "mean velocity along z"),
+/// Columns of a kind of bodies, means in SI units: ⟨v²⟩, ⟨v⁴⟩, the energies of rotation about the principal axes, ⟨E_rot²⟩, ⟨v² E_rot⟩, ⟨cos²⟩ of the angles
+/// of v with ω and with the third axis of the body, and ⟨**v**⟩.
+pub const GAS_KIND: [&str; 12] = [
+    "speed_squared",
+    "speed_fourth",
+    "rotational_x",
+    "rotational_y",
+    "rotational_z",
+    "rotational_squared",
+    "mixed",
+    "cos2_velocity_spin",
+    "cos2_velocity_axis",
+    "momentum_x",
+    "momentum_y",
+    "momentum_z",
 ];
 
 /// Bins of a distribution, and the width of one.

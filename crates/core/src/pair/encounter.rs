@@ -7,8 +7,8 @@ use super::lasting::Lasting;
 use super::partner::{FreeBody, PairState, Partner, flight};
 use crate::contact::{Between, PairDeparture, PairSearch, PairTouch};
 use crate::law::{Law, Rule};
-use crate::math::{Quaternion, Vector};
-use crate::simd::Level;
+use crate::math::{Quaternion, Vector, Vectors};
+use crate::simd::{Level, Pack};
 use crate::{COLLAPSE_RUN, Fault};
 use pulp::{Simd, WithSimd};
 
@@ -301,29 +301,8 @@ impl Following<'_, '_> {
                 (0.0, f64::INFINITY)
             };
         }
-        let (square, along) = (velocity.dot(velocity), apart.dot(velocity));
-        let beyond = apart.dot(apart) - reach * reach;
-        let across = apart.cross(velocity);
-        let chord = square * (reach * reach) - across.dot(across);
-        if square == 0.0 {
-            let leaves = if beyond > 0.0 { 0.0 } else { f64::INFINITY };
-            return (0.0, leaves);
-        }
-        if chord <= 0.0 {
-            return (0.0, 0.0);
-        }
-        let root = chord.sqrt();
-        let leaves = if along > 0.0 {
-            -beyond / (along + root)
-        } else {
-            (root - along) / square
-        };
-        let enters = if along < 0.0 {
-            beyond / (root - along)
-        } else {
-            0.0
-        };
-        (enters.max(0.0), leaves.max(0.0))
+        let (enters, leaves) = within(apart.in_lane(), velocity.in_lane(), reach);
+        (enters.as_slice()[0], leaves.as_slice()[0])
     }
 
     /// Moves the bodies as long as they are pressed together, if there is no friction; returns the time and the speed at which they part.
@@ -388,6 +367,28 @@ impl Following<'_, '_> {
         two.push(bodies[1], arms[1], impulse, -1.0);
         Ok(answer.separation_speed)
     }
+}
+
+/// The times between which a point at **y** with the velocity **u** is within reach of the origin; both are 0 where it never is from now on.
+#[inline(always)]
+pub(super) fn within<S: Simd>(
+    y: Vectors<S, 1>,
+    u: Vectors<S, 1>,
+    reach: f64,
+) -> (Pack<S, 1>, Pack<S, 1>) {
+    let (square, along) = (u.dot(u), y.dot(u));
+    let zero = Pack::splat(square.simd(), 0.0);
+    let beyond = y.dot(y) - reach * reach;
+    let across = y.cross(u);
+    let chord = square * (reach * reach) - across.dot(across);
+    let root = chord.max(0.0).sqrt();
+    let (parts, comes) = (zero.lt(along), along.lt(0.0));
+    let leaves = parts.select(-beyond, root - along) / parts.select(along + root, square);
+    let enters = comes.select(beyond / comes.select(root - along, 1.0), 0.0);
+    let meets = zero.lt(chord) & zero.lt(leaves);
+    let stays = square.eq(0.0) & beyond.le(0.0);
+    let leaves = stays.select(f64::INFINITY, meets.select(leaves, 0.0));
+    (meets.select(enters.max(0.0), 0.0), leaves)
 }
 
 /// A rotation that takes the z axis to a unit vector.

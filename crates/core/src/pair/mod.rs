@@ -5,6 +5,7 @@ mod follow;
 mod lanes;
 mod lasting;
 mod partner;
+mod recorded;
 mod run;
 mod sample;
 
@@ -12,7 +13,7 @@ pub use encounter::{Ending, Hit, Outcome, Trouble, encounter, narrowest};
 pub(crate) use follow::Follower;
 pub(crate) use partner::{Approach, FreeBody};
 pub use partner::{PairState, Partner};
+pub use recorded::{PER_CONTACT, PER_ENCOUNTER, PairTable};
 pub(crate) use run::failed;
-pub use run::{ENCOUNTER, HIT, PairTable, PairVariable, width};
 pub(crate) use sample::{DrawRows, approach, normals};
 pub use sample::{Encounters, Meeting};

@@ -8,9 +8,6 @@ use crate::{Error, Value};
 use pulp::Simd;
 use std::ops::Range;
 
-/// The parameters that the size of a table follows from.
-pub(crate) const ROOM: &str = "particles * impacts";
-
 /// The recorded values of a variable.
 pub type Values = Elements<Vec<f64>, Vec<i8>, Vec<i32>, Vec<i64>>;
 /// Slices of a column.
@@ -34,6 +31,8 @@ pub(crate) trait Stored: Copy {
     const KIND: Element;
     /// [`Variable::components`].
     const COMPONENTS: &'static [&'static str] = &[];
+    /// [`Variable::each`].
+    const EACH: bool = false;
 
     /// Writes the values of some lanes into cells, pairs of a lane and a cell.
     fn put(column: &mut Slices<'_>, cells: &[(usize, usize)], value: impl Fn(usize) -> Self);
@@ -74,12 +73,17 @@ stored! {
     i64: Counts;
 }
 
-impl<const N: usize> Stored for [f64; N] {
-    const KIND: Element = Elements::Numbers(());
-    const COMPONENTS: &'static [&'static str] = match N {
+const fn components(number: usize) -> &'static [&'static str] {
+    match number {
+        1 => &[],
         3 => &["x", "y", "z"],
         _ => &["w", "x", "y", "z"],
-    };
+    }
+}
+
+impl<const N: usize> Stored for [f64; N] {
+    const KIND: Element = Elements::Numbers(());
+    const COMPONENTS: &'static [&'static str] = components(N);
 
     #[inline(always)]
     fn put(column: &mut Slices<'_>, cells: &[(usize, usize)], value: impl Fn(usize) -> Self) {
@@ -88,6 +92,22 @@ impl<const N: usize> Stored for [f64; N] {
         };
         for &(lane, cell) in cells {
             column[N * cell..N * (cell + 1)].copy_from_slice(&value(lane));
+        }
+    }
+}
+
+impl<const N: usize> Stored for [[f64; N]; 2] {
+    const KIND: Element = Elements::Numbers(());
+    const COMPONENTS: &'static [&'static str] = components(N);
+    const EACH: bool = true;
+
+    #[inline(always)]
+    fn put(column: &mut Slices<'_>, cells: &[(usize, usize)], value: impl Fn(usize) -> Self) {
+        let Elements::Numbers(column) = column else {
+            unreachable!("elements of its kind")
+        };
+        for &(lane, cell) in cells {
+            column[2 * N * cell..][..2 * N].copy_from_slice(value(lane).as_flattened());
         }
     }
 }
@@ -156,16 +176,17 @@ impl Columns {
 }
 
 /// A table: of every chosen variable a column, with as many cells in each row.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TableColumns {
-    pub all: &'static [Variable],
-    pub per_row: usize,
+    all: &'static [Variable],
+    per_row: usize,
     pub columns: Vec<Option<Values>>,
 }
 
 impl TableColumns {
-    /// A table of zeros, whose pages are not touched yet.
+    /// A table of zeros, whose pages are not touched yet; `what` is for the error.
     pub fn new(
+        what: &'static str,
         all: &'static [Variable],
         chosen: &Columns,
         rows: usize,
@@ -174,7 +195,7 @@ impl TableColumns {
         let column = |(about, chosen): (&Variable, &bool)| {
             let size = rows * per_row * about.width();
             chosen
-                .then(|| Ok(each!(about.kind, () => zeros(ROOM, size)?)))
+                .then(|| Ok(each!(about.kind, () => zeros(what, size)?)))
                 .transpose()
         };
         let columns = all.iter().zip(&chosen.0).map(column);
@@ -208,6 +229,19 @@ impl TableColumns {
             let cells = row * size..row * size + events * (size / per_row);
             each!(column, these => these.copy_within(cells.clone(), place * size));
         });
+    }
+
+    /// A copy of the values of a variable as numbers, if it was chosen.
+    pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
+        let mut known = self.all.iter().zip(&self.columns);
+        let known =
+            known.find_map(|(about, values)| values.as_ref().filter(|_| about.name == name));
+        Some(match known? {
+            Elements::Numbers(values) => values.clone(),
+            Elements::Flags(values) => values.iter().copied().map(f64::from).collect(),
+            Elements::Parts(values) => values.iter().copied().map(f64::from).collect(),
+            Elements::Counts(values) => values.iter().map(|&count| count as f64).collect(),
+        })
     }
 
     /// The chosen variables with their values, which are moved out.

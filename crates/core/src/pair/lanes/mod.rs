@@ -10,7 +10,7 @@ mod clump;
 pub(super) use axial::AxialBody;
 pub(super) use clump::ClumpBody;
 
-use super::encounter::{Chance, End, Ending, Hit, OnHit, Outcome, UNRESOLVED};
+use super::encounter::{Chance, End, Ending, Hit, OnHit, Outcome, UNRESOLVED, within};
 use super::partner::{Approach, FreeBody, Partner};
 use crate::contact::{BallGaps, INVISIBLE};
 use crate::law::{Frictionless, Law, Rule};
@@ -316,19 +316,9 @@ impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
     fn begin(&mut self, pair: &LanePair<'_, '_, F::Body>, fresh: Mask<S, 1>) {
         let simd = self.time.simd();
         let zero = Pack::splat(simd, 0.0);
-        let (y, u, reach) = (self.apart, self.velocity, pair.reach);
-        let (square, along) = (u.dot(u), y.dot(u));
-        let beyond = y.dot(y) - reach * reach;
-        let across = y.cross(u);
-        let chord = square * (reach * reach) - across.dot(across);
-        let root = chord.max(0.0).sqrt();
-        let (parts, comes) = (zero.lt(along), along.lt(0.0));
-        let leaves = parts.select(-beyond, root - along) / parts.select(along + root, square);
-        let enters = comes.select(beyond / comes.select(root - along, 1.0), 0.0);
-        let meets = zero.lt(chord) & zero.lt(leaves);
-        let stays = square.eq(0.0) & beyond.le(0.0);
-        let until = stays.select(f64::INFINITY, meets.select(leaves, 0.0));
-        self.time = fresh.select(enters.max(0.0), self.time);
+        let reach = pair.reach;
+        let (enters, until) = within(self.apart, self.velocity, reach);
+        self.time = fresh.select(enters, self.time);
         self.until = fresh.select(until, self.until);
         self.looks = fresh.select(0.0, self.looks);
         let mut most = zero;
@@ -339,7 +329,7 @@ impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
         }
         if pair.surfaces == Surfaces::Spheres {
             // They touch where they come into reach of each other, and that once.
-            let met = zero.lt(self.contacts) | !comes;
+            let met = zero.lt(self.contacts) | !self.apart.dot(self.velocity).lt(0.0);
             self.time = fresh.select(met.select(f64::INFINITY, self.time), self.time);
             return;
         }
