@@ -228,7 +228,7 @@ impl RoundParts<'_> {
         let mut now = self.along(n, between, axes);
         for _ in 0..2 * ROUNDS {
             let across = n.cross(units[1].or((n.x * n.x).lt(0.5), units[0]));
-            let u = across.times(1.0 / across.dot(across).sqrt());
+            let u = across * (1.0 / across.dot(across).sqrt());
             let v = n.cross(u);
             // Slope along both, and curvature: radii of curvature, and the gap, as n stays a unit vector.
             let mut slope = [u.dot(between), v.dot(between)];
@@ -256,7 +256,7 @@ impl RoundParts<'_> {
             let size = square.sqrt();
             let part = (0.7 / size).min(1.0) * share;
             let moved = v.mul_add(y * part, u.mul_add(x * part, n));
-            let next = moved.times(1.0 / moved.dot(moved).sqrt());
+            let next = moved * (1.0 / moved.dot(moved).sqrt());
             let there = self.along(next, between, axes);
             let wider = waits & (now.width.le(there.width) | (part * size).lt(1e-7));
             n = n.or(wider, next);

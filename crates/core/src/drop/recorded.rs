@@ -187,23 +187,23 @@ variables! {
         text: "velocity of the centre of mass before the impact",
         unit: Some("m s-1"),
         when: When::StateAsked
-    } = |impact, plan| impact.pose.velocities()[0].times(plan.scales.speed);
+    } = |impact, plan| impact.pose.velocities()[0] * plan.scales.speed;
 
     velocity_after: [f64; 3] {
         text: "velocity of the centre of mass after the impact",
         unit: Some("m s-1"),
         when: When::StateAsked
-    } = |impact, plan| impact.pose.velocities()[1].times(plan.scales.speed);
+    } = |impact, plan| impact.pose.velocities()[1] * plan.scales.speed;
 
     angular_velocity_before: [f64; 3] {
         text: "angular velocity before the impact",
         unit: Some("rad s-1"),
         when: When::StateAsked
-    } = |impact, plan| impact.pose.spin_before().times(1.0 / plan.scales.time);
+    } = |impact, plan| impact.pose.spin_before() * (1.0 / plan.scales.time);
 
     angular_velocity_after: [f64; 3] {
         text: "angular velocity after the impact",
         unit: Some("rad s-1"),
         when: When::StateAsked
-    } = |impact, plan| impact.pose.spin_after().times(1.0 / plan.scales.time);
+    } = |impact, plan| impact.pose.spin_after() * (1.0 / plan.scales.time);
 }

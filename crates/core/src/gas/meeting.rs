@@ -88,12 +88,12 @@ impl WithSimd for Candidates<'_, '_, '_> {
                 turns.as_mut_slice()[lane] = turn;
                 numbers[lane] = candidate.number;
             }
-            let u = both[0].minus(both[1]);
+            let u = both[0] - both[1];
             let speed = u.norm();
             let share = speed / Pack::splat(simd, self.fastest) * self.section;
             let meet = chances.lt(share);
             let beyond = Pack::splat(simd, 1.0).lt(share);
-            let direction = u.over(speed);
+            let direction = u / speed;
             let around = sincos_in_lanes(TAU * turns);
             let apart = approach(direction, direction.across(), squares.sqrt(), around);
             if smooth {

@@ -13,8 +13,8 @@ pub use quaternion::Quaternion;
 pub(crate) use quaternion::{Quaternions, sum};
 pub use symmetric::Symmetric;
 pub(crate) use symmetric::UNITS;
-pub use vector::Vector;
 pub(crate) use vector::Vectors;
+pub use vector::{Part, Vector};
 
 /// Nodes of Gauss's quadrature with 16 points, and their weights; each stands for its mirror image as well.
 pub(crate) const GAUSS: [[f64; 2]; 8] = [

@@ -1,140 +1,126 @@
 //! Rotations as unit quaternions.
 
-use super::{Vector, Vectors};
+use super::{Part, Vector, Vectors};
 use crate::simd::{Mask, Pack};
 use pulp::{Scalar, Simd};
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Div, Mul, Sub};
 
-/// A quaternion w + x**i** + y**j** + z**k**. One of length 1 is the rotation by 2 arccos w about (x, y, z), and as an attitude takes the
-/// axes of the body to those of space.
+/// A quaternion w + x**i** + y**j** + z**k**, or one in each lane. One of length 1 is the rotation by 2 arccos w about (x, y, z), and as an
+/// attitude takes the axes of the body to those of space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Quaternion {
+pub struct Quaternion<T = f64> {
     /// Real part.
-    pub w: f64,
+    pub w: T,
     /// Part along **i**.
-    pub x: f64,
+    pub x: T,
     /// Part along **j**.
-    pub y: f64,
+    pub y: T,
     /// Part along **k**.
-    pub z: f64,
+    pub z: T,
 }
 
-impl Quaternion {
-    /// No rotation.
-    pub const IDENTITY: Self = Self::new(1.0, 0.0, 0.0, 0.0);
+/// A unit quaternion in each lane.
+pub(crate) type Quaternions<S> = Quaternion<Pack<S, 1>>;
 
+impl<T: Copy> Quaternion<T> {
     /// The quaternion (w, x, y, z).
     #[inline(always)]
-    pub const fn new(w: f64, x: f64, y: f64, z: f64) -> Self {
+    pub const fn new(w: T, x: T, y: T, z: T) -> Self {
+        Self { w, x, y, z }
+    }
+
+    /// The quaternion of a real part and of those along **i**, **j** and **k**.
+    #[inline(always)]
+    pub(crate) const fn of(w: T, Vector { x, y, z }: Vector<T>) -> Self {
         Self { w, x, y, z }
     }
 
     /// w, x, y and z.
     #[inline(always)]
-    pub const fn parts(self) -> [f64; 4] {
+    pub const fn parts(self) -> [T; 4] {
         [self.w, self.x, self.y, self.z]
     }
 
+    /// The parts along **i**, **j** and **k**.
+    #[inline(always)]
+    pub(crate) const fn vector(self) -> Vector<T> {
+        Vector::new(self.x, self.y, self.z)
+    }
+}
+
+impl<T: Part> Quaternion<T> {
     /// The rotation backward.
     #[inline(always)]
-    pub const fn inverse(self) -> Self {
+    pub fn inverse(self) -> Self {
         Self::new(self.w, -self.x, -self.y, -self.z)
     }
+}
 
+impl<T: Part + Sub<f64, Output = T>> Quaternion<T>
+where
+    f64: Div<T, Output = T> + Mul<T, Output = T> + Sub<T, Output = T>,
+{
     /// The same direction with length 1.
     #[inline(always)]
     pub fn normalized(self) -> Self {
         let Self { w, x, y, z } = self;
-        let part = 1.0 / square(self.parts()).sqrt();
+        let part = 1.0 / (w * w + x * x + y * y + z * z).root();
         Self::new(part * w, part * x, part * y, part * z)
     }
 
-    /// [`turned`].
+    /// The product of two whose length is 1 but for rounding, with length 1. Over many turns by the same angle rounding must not lean to one
+    /// side, as it does in w(1 − 10⁻¹⁶): so the turn's difference from 1 is multiplied, and what the last sum has lost is added with what the
+    /// length lacks.
     #[inline(always)]
     pub(crate) fn turned(self, turn: Self) -> Self {
-        let [w, x, y, z] = turned(self.parts(), turn.parts());
-        Self::new(w, x, y, z)
+        let [aw, ax, ay, az] = self.parts();
+        let [bw, bx, by, bz] = turn.parts();
+        let less = bw - 1.0;
+        let (w, dw) = sum(aw, aw * less - ax * bx - ay * by - az * bz);
+        let (x, dx) = sum(ax, ax * less + aw * bx + ay * bz - az * by);
+        let (y, dy) = sum(ay, ay * less + aw * by + az * bx - ax * bz);
+        let (z, dz) = sum(az, az * less + aw * bz + ax * by - ay * bx);
+        let part = 0.5 * (1.0 - w * w - x * x - y * y - z * z);
+        Self::new(
+            w + (dw + part * w),
+            x + (dx + part * x),
+            y + (dy + part * y),
+            z + (dz + part * z),
+        )
     }
 
-    /// The only lane of one in each.
+    /// A vector of the body in the axes of space: **v** + 2w **q** × **v** + 2**q** × (**q** × **v**).
     #[inline(always)]
-    pub(crate) fn in_lane(self) -> Quaternions<Scalar> {
-        Quaternions::splat(Scalar::new(), self)
+    pub fn rotate(self, v: Vector<T>) -> Vector<T> {
+        let Self { w, x, y, z } = self;
+        let (a, b, c) = (
+            2.0 * (y * v.z - z * v.y),
+            2.0 * (z * v.x - x * v.z),
+            2.0 * (x * v.y - y * v.x),
+        );
+        Vector::new(
+            v.x + (w * a + (y * c - z * b)),
+            v.y + (w * b + (z * a - x * c)),
+            v.z + (w * c + (x * b - y * a)),
+        )
     }
+}
 
-    /// A vector of the body in the axes of space.
+/// The rotation by the second and then by the first.
+impl<T: Part> Mul for Quaternion<T> {
+    type Output = Self;
+
     #[inline(always)]
-    pub fn rotate(self, v: Vector) -> Vector {
-        let [x, y, z] = rotated(self.parts(), v.parts());
-        Vector::new(x, y, z)
+    fn mul(self, second: Self) -> Self {
+        let [aw, ax, ay, az] = self.parts();
+        let [bw, bx, by, bz] = second.parts();
+        Self::new(
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by + ay * bw + az * bx - ax * bz,
+            aw * bz + az * bw + ax * by - ay * bx,
+        )
     }
-}
-
-/// A part of a quaternion: a number, or one in each lane.
-pub(crate) trait Part:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
-{
-}
-
-impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Part for T {}
-
-/// The product of two quaternions (w, x, y, z): the rotation by the second and then by the first.
-#[inline(always)]
-pub(crate) fn product<T: Part>([aw, ax, ay, az]: [T; 4], [bw, bx, by, bz]: [T; 4]) -> [T; 4] {
-    [
-        aw * bw - ax * bx - ay * by - az * bz,
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by + ay * bw + az * bx - ax * bz,
-        aw * bz + az * bw + ax * by - ay * bx,
-    ]
-}
-
-/// The product of two whose length is 1 but for rounding, with length 1. Over many turns by the same angle rounding must not lean to one side, as it
-/// does in w(1 − 10⁻¹⁶): so the turn's difference from 1 is multiplied, and what the last sum has lost is added with what the length lacks.
-#[inline(always)]
-fn turned<T: Part + Sub<f64, Output = T>>(
-    [aw, ax, ay, az]: [T; 4],
-    [bw, bx, by, bz]: [T; 4],
-) -> [T; 4]
-where
-    f64: Mul<T, Output = T> + Sub<T, Output = T>,
-{
-    let less = bw - 1.0;
-    let (w, dw) = sum(aw, aw * less - ax * bx - ay * by - az * bz);
-    let (x, dx) = sum(ax, ax * less + aw * bx + ay * bz - az * by);
-    let (y, dy) = sum(ay, ay * less + aw * by + az * bx - ax * bz);
-    let (z, dz) = sum(az, az * less + aw * bz + ax * by - ay * bx);
-    let part = 0.5 * (1.0 - w * w - x * x - y * y - z * z);
-    [
-        w + (dw + part * w),
-        x + (dx + part * x),
-        y + (dy + part * y),
-        z + (dz + part * z),
-    ]
-}
-
-/// The square of its length.
-#[inline(always)]
-pub(crate) fn square<T: Part>([w, x, y, z]: [T; 4]) -> T {
-    w * w + x * x + y * y + z * z
-}
-
-/// A vector after the rotation by a unit quaternion: **v** + 2w **q** × **v** + 2**q** × (**q** × **v**).
-#[inline(always)]
-pub(crate) fn rotated<T: Part>([w, x, y, z]: [T; 4], [vx, vy, vz]: [T; 3]) -> [T; 3]
-where
-    f64: Mul<T, Output = T>,
-{
-    let (a, b, c) = (
-        2.0 * (y * vz - z * vy),
-        2.0 * (z * vx - x * vz),
-        2.0 * (x * vy - y * vx),
-    );
-    [
-        vx + (w * a + (y * c - z * b)),
-        vy + (w * b + (z * a - x * c)),
-        vz + (w * c + (x * b - y * a)),
-    ]
 }
 
 /// A sum, and what it has lost by rounding: D. E. Knuth, *The Art of Computer Programming* 2, theorem 4.2.2 B.
@@ -145,102 +131,45 @@ pub(crate) fn sum<T: Part>(a: T, b: T) -> (T, T) {
     (sum, (a - (sum - second)) + (b - second))
 }
 
-/// The rotation by the second and then by the first.
-impl Mul for Quaternion {
-    type Output = Self;
+impl Quaternion {
+    /// No rotation.
+    pub const IDENTITY: Self = Self::new(1.0, 0.0, 0.0, 0.0);
 
+    /// The only lane of one in each.
     #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        let [w, x, y, z] = product(self.parts(), b.parts());
-        Self::new(w, x, y, z)
+    pub(crate) fn in_lane(self) -> Quaternions<Scalar> {
+        Quaternions::splat(Scalar::new(), self)
     }
-}
-
-/// A unit quaternion in each lane.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Quaternions<S: Simd> {
-    pub w: Pack<S, 1>,
-    pub v: Vectors<S, 1>,
 }
 
 impl<S: Simd> Quaternions<S> {
     /// The same one in every lane.
     #[inline(always)]
-    pub fn splat(simd: S, of: Quaternion) -> Self {
-        Self {
-            w: Pack::splat(simd, of.w),
-            v: Vectors::splat(simd, Vector::new(of.x, of.y, of.z)),
-        }
-    }
-
-    #[inline(always)]
-    pub fn parts(self) -> [Pack<S, 1>; 4] {
-        [self.w, self.v.x, self.v.y, self.v.z]
-    }
-
-    #[inline(always)]
-    pub fn of([w, x, y, z]: [Pack<S, 1>; 4]) -> Self {
-        Self {
-            w,
-            v: Vectors { x, y, z },
-        }
-    }
-
-    /// The rotation by the second and then by this.
-    #[inline(always)]
-    pub fn times(self, second: Self) -> Self {
-        Self::of(product(self.parts(), second.parts()))
-    }
-
-    /// [`turned`].
-    #[inline(always)]
-    pub fn turned(self, turn: Self) -> Self {
-        Self::of(turned(self.parts(), turn.parts()))
-    }
-
-    #[inline(always)]
-    pub fn normalized(self) -> Self {
-        let part = 1.0 / square(self.parts()).sqrt();
-        Self {
-            w: self.w * part,
-            v: self.v.times(part),
-        }
-    }
-
-    /// A vector after the rotation.
-    #[inline(always)]
-    pub fn rotate(self, v: Vectors<S, 1>) -> Vectors<S, 1> {
-        let [x, y, z] = rotated(self.parts(), [v.x, v.y, v.z]);
-        Vectors { x, y, z }
-    }
-
-    /// The rotation backward.
-    #[inline(always)]
-    pub fn inverse(self) -> Self {
-        Self {
-            v: self.v.times(-1.0),
-            ..self
-        }
+    pub(crate) fn splat(simd: S, of: Quaternion) -> Self {
+        Self::of(Pack::splat(simd, of.w), Vectors::splat(simd, of.vector()))
     }
 
     /// The same, but those of `other` in the lanes of the mask.
     #[inline(always)]
-    pub fn or(self, mask: Mask<S, 1>, other: Self) -> Self {
-        Self {
-            w: mask.select(other.w, self.w),
-            v: self.v.or(mask, other.v),
+    pub(crate) fn or(self, mask: Mask<S, 1>, other: Self) -> Self {
+        let w = mask.select(other.w, self.w);
+        Self::of(w, self.vector().or(mask, other.vector()))
+    }
+
+    #[inline(always)]
+    pub(crate) fn put(&mut self, lane: usize, of: Quaternion) {
+        for (own, part) in [
+            (&mut self.w, of.w),
+            (&mut self.x, of.x),
+            (&mut self.y, of.y),
+            (&mut self.z, of.z),
+        ] {
+            own.as_mut_slice()[lane] = part;
         }
     }
 
     #[inline(always)]
-    pub fn put(&mut self, lane: usize, of: Quaternion) {
-        self.w.as_mut_slice()[lane] = of.w;
-        self.v.put(lane, Vector::new(of.x, of.y, of.z));
-    }
-
-    #[inline(always)]
-    pub fn lane(&self, lane: usize) -> Quaternion {
-        let Vector { x, y, z } = self.v.lane(lane);
-        Quaternion::new(self.w.as_slice()[lane], x, y, z)
+    pub(crate) fn lane(&self, lane: usize) -> Quaternion {
+        Quaternion::of(self.w.as_slice()[lane], self.vector().lane(lane))
     }
 }

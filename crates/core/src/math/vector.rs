@@ -5,54 +5,160 @@
 
 use crate::simd::{Mask, Operand, Pack};
 use pulp::{Scalar, Simd};
-use std::ops::{Add, Div, Mul, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A vector (x, y, z); z is along the plane normal.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Vector {
-    /// Component along the plane, down the slope if it is inclined.
-    pub x: f64,
-    /// Component along the plane, perpendicular to x.
-    pub y: f64,
-    /// Component along the plane normal.
-    pub z: f64,
+/// A component of a vector, or a part of a quaternion: a number, or one in each lane.
+pub trait Part:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Fused<Self>
+{
+    /// The square root.
+    fn root(self) -> Self;
 }
 
-impl Vector {
+/// A component, and what it can be multiplied by.
+pub trait Fused<F> {
+    /// `self * factor + addend`, rounded once.
+    fn fused(self, factor: F, addend: Self) -> Self;
+}
+
+impl Part for f64 {
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+}
+
+impl Fused<f64> for f64 {
+    #[inline(always)]
+    fn fused(self, factor: f64, addend: f64) -> f64 {
+        self.mul_add(factor, addend)
+    }
+}
+
+impl<S: Simd, const K: usize> Part for Pack<S, K> {
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+}
+
+impl<S: Simd, const K: usize, F: Operand<S, K>> Fused<F> for Pack<S, K> {
+    #[inline(always)]
+    fn fused(self, factor: F, addend: Self) -> Self {
+        self.mul_add(factor, addend)
+    }
+}
+
+/// A vector (x, y, z), or one in each lane; z is along the plane normal.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Vector<T = f64> {
+    /// Component along the plane, down the slope if it is inclined.
+    pub x: T,
+    /// Component along the plane, perpendicular to x.
+    pub y: T,
+    /// Component along the plane normal.
+    pub z: T,
+}
+
+/// A vector in each lane.
+pub(crate) type Vectors<S, const K: usize> = Vector<Pack<S, K>>;
+
+impl<T: Copy> Vector<T> {
     /// The vector (x, y, z).
     #[inline(always)]
-    pub const fn new(x: f64, y: f64, z: f64) -> Self {
+    pub const fn new(x: T, y: T, z: T) -> Self {
         Self { x, y, z }
     }
 
     /// The components.
     #[inline(always)]
-    pub const fn parts(self) -> [f64; 3] {
+    pub const fn parts(self) -> [T; 3] {
         [self.x, self.y, self.z]
     }
+}
 
+impl<T: Part> Vector<T> {
     /// Scalar product.
     #[inline(always)]
-    pub fn dot(self, b: Self) -> f64 {
-        self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z))
+    pub fn dot(self, b: Self) -> T {
+        self.x.fused(b.x, self.y.fused(b.y, self.z * b.z))
     }
 
     /// Vector product.
     #[inline(always)]
     pub fn cross(self, b: Self) -> Self {
         Self {
-            x: self.y.mul_add(b.z, -(self.z * b.y)),
-            y: self.z.mul_add(b.x, -(self.x * b.z)),
-            z: self.x.mul_add(b.y, -(self.y * b.x)),
+            x: self.y.fused(b.z, -(self.z * b.y)),
+            y: self.z.fused(b.x, -(self.x * b.z)),
+            z: self.x.fused(b.y, -(self.y * b.x)),
         }
     }
 
     /// Length.
     #[inline(always)]
-    pub fn norm(self) -> f64 {
-        self.dot(self).sqrt()
+    pub fn norm(self) -> T {
+        self.dot(self).root()
     }
 
+    /// Length of the component along the plane.
+    #[inline(always)]
+    pub fn horizontal(self) -> T {
+        self.x.fused(self.x, self.y * self.y).root()
+    }
+
+    /// `self * factor + addend`, each component rounded once.
+    #[inline(always)]
+    pub fn mul_add<F: Copy>(self, factor: F, addend: Self) -> Self
+    where
+        T: Fused<F>,
+    {
+        Self {
+            x: self.x.fused(factor, addend.x),
+            y: self.y.fused(factor, addend.y),
+            z: self.z.fused(factor, addend.z),
+        }
+    }
+}
+
+impl<T: Part> Add for Vector<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Self::new(self.x + b.x, self.y + b.y, self.z + b.z)
+    }
+}
+
+impl<T: Part> Sub for Vector<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Self::new(self.x - b.x, self.y - b.y, self.z - b.z)
+    }
+}
+
+impl<T: Part + Mul<F, Output = T>, F: Copy> Mul<F> for Vector<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: F) -> Self {
+        Self::new(self.x * factor, self.y * factor, self.z * factor)
+    }
+}
+
+impl<T: Part> Div<T> for Vector<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, divisor: T) -> Self {
+        Self::new(self.x / divisor, self.y / divisor, self.z / divisor)
+    }
+}
+
+impl Vector {
     /// A unit vector across this one, whose own length is 1.
     #[inline(always)]
     pub fn across(self) -> Self {
@@ -64,67 +170,12 @@ impl Vector {
     pub(crate) fn in_lane(self) -> Vectors<Scalar, 1> {
         Vectors::splat(Scalar::new(), self)
     }
-
-    /// Length of the component along the plane.
-    pub fn horizontal(self) -> f64 {
-        self.x.mul_add(self.x, self.y * self.y).sqrt()
-    }
-
-    /// `self * factor + addend`, each component rounded once.
-    #[inline(always)]
-    pub fn mul_add(self, factor: f64, addend: Self) -> Self {
-        Self {
-            x: self.x.mul_add(factor, addend.x),
-            y: self.y.mul_add(factor, addend.y),
-            z: self.z.mul_add(factor, addend.z),
-        }
-    }
-}
-
-impl Add for Vector {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self::new(self.x + b.x, self.y + b.y, self.z + b.z)
-    }
-}
-
-impl Sub for Vector {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self::new(self.x - b.x, self.y - b.y, self.z - b.z)
-    }
-}
-
-impl Mul<f64> for Vector {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, factor: f64) -> Self {
-        Self::new(self.x * factor, self.y * factor, self.z * factor)
-    }
-}
-
-impl Div<f64> for Vector {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, divisor: f64) -> Self {
-        Self::new(self.x / divisor, self.y / divisor, self.z / divisor)
-    }
-}
-
-/// A vector (x, y, z) in each lane; z is along the plane normal.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Vectors<S: Simd, const K: usize> {
-    pub x: Pack<S, K>,
-    pub y: Pack<S, K>,
-    pub z: Pack<S, K>,
 }
 
 impl<S: Simd, const K: usize> Vectors<S, K> {
     /// The same vector in every lane.
     #[inline(always)]
-    pub fn splat(simd: S, vector: Vector) -> Self {
+    pub(crate) fn splat(simd: S, vector: Vector) -> Self {
         Self {
             x: Pack::splat(simd, vector.x),
             y: Pack::splat(simd, vector.y),
@@ -132,37 +183,9 @@ impl<S: Simd, const K: usize> Vectors<S, K> {
         }
     }
 
-    /// The components.
-    #[inline(always)]
-    pub const fn parts(self) -> [Pack<S, K>; 3] {
-        [self.x, self.y, self.z]
-    }
-
-    /// Scalar product.
-    #[inline(always)]
-    pub fn dot(self, b: Self) -> Pack<S, K> {
-        self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z))
-    }
-
-    /// Vector product.
-    #[inline(always)]
-    pub fn cross(self, b: Self) -> Self {
-        Self {
-            x: self.y.mul_add(b.z, -(self.z * b.y)),
-            y: self.z.mul_add(b.x, -(self.x * b.z)),
-            z: self.x.mul_add(b.y, -(self.y * b.x)),
-        }
-    }
-
-    /// Length.
-    #[inline(always)]
-    pub fn norm(self) -> Pack<S, K> {
-        self.dot(self).sqrt()
-    }
-
     /// A unit vector across this one, whose own length is 1.
     #[inline(always)]
-    pub fn across(self) -> Self {
+    pub(crate) fn across(self) -> Self {
         let simd = self.x.simd();
         let first = self.x.abs().lt(0.6);
         let across = self.cross(Self {
@@ -170,64 +193,12 @@ impl<S: Simd, const K: usize> Vectors<S, K> {
             y: first.select(Pack::splat(simd, 0.0), 1.0),
             z: Pack::splat(simd, 0.0),
         });
-        across.over(across.norm())
-    }
-
-    /// `self * factor + addend`, each component rounded once.
-    #[inline(always)]
-    pub fn mul_add(self, factor: impl Operand<S, K>, addend: Self) -> Self {
-        let factor = factor.in_lanes(self.x.simd());
-        Self {
-            x: self.x.mul_add(factor, addend.x),
-            y: self.y.mul_add(factor, addend.y),
-            z: self.z.mul_add(factor, addend.z),
-        }
-    }
-
-    /// `self * factor`.
-    #[inline(always)]
-    pub fn times(self, factor: impl Operand<S, K>) -> Self {
-        let factor = factor.in_lanes(self.x.simd());
-        Self {
-            x: self.x * factor,
-            y: self.y * factor,
-            z: self.z * factor,
-        }
-    }
-
-    /// `self / divisor`.
-    #[inline(always)]
-    pub fn over(self, divisor: Pack<S, K>) -> Self {
-        Self {
-            x: self.x / divisor,
-            y: self.y / divisor,
-            z: self.z / divisor,
-        }
-    }
-
-    /// `self + b`.
-    #[inline(always)]
-    pub fn plus(self, b: Self) -> Self {
-        Self {
-            x: self.x + b.x,
-            y: self.y + b.y,
-            z: self.z + b.z,
-        }
-    }
-
-    /// `self − b`.
-    #[inline(always)]
-    pub fn minus(self, b: Self) -> Self {
-        Self {
-            x: self.x - b.x,
-            y: self.y - b.y,
-            z: self.z - b.z,
-        }
+        across / across.norm()
     }
 
     /// The same vectors, but those of `other` in the lanes of the mask.
     #[inline(always)]
-    pub fn or(self, mask: Mask<S, K>, other: Self) -> Self {
+    pub(crate) fn or(self, mask: Mask<S, K>, other: Self) -> Self {
         Self {
             x: mask.select(other.x, self.x),
             y: mask.select(other.y, self.y),
@@ -237,7 +208,7 @@ impl<S: Simd, const K: usize> Vectors<S, K> {
 
     /// The vector in a lane.
     #[inline(always)]
-    pub fn lane(&self, lane: usize) -> Vector {
+    pub(crate) fn lane(&self, lane: usize) -> Vector {
         Vector {
             x: self.x.as_slice()[lane],
             y: self.y.as_slice()[lane],
@@ -246,7 +217,7 @@ impl<S: Simd, const K: usize> Vectors<S, K> {
     }
 
     #[inline(always)]
-    pub fn put(&mut self, lane: usize, vector: Vector) {
+    pub(crate) fn put(&mut self, lane: usize, vector: Vector) {
         self.x.as_mut_slice()[lane] = vector.x;
         self.y.as_mut_slice()[lane] = vector.y;
         self.z.as_mut_slice()[lane] = vector.z;

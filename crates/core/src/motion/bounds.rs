@@ -1,6 +1,6 @@
 //! Bounds on what a body that moves freely can do, for certified steps.
 
-use crate::math::quaternion::Part;
+use crate::math::Part;
 use std::ops::Mul;
 
 /// The largest |ω|² of a flight, from the principal moments and ω.

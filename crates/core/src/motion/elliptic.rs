@@ -286,12 +286,12 @@ impl<S: Simd> Elliptic<S> {
             cosines,
             start: Quaternions::splat(simd, Quaternion::IDENTITY),
         };
-        let v = attitude.v.parts();
+        let v = attitude.vector().parts();
         let (x, z) = (above.select(v[low], v[high]), above.select(v[high], v[low]));
         let (sine, cosine) = sincos_in_lanes(phase);
         let (_, argument) = found.thetas(sine, cosine);
         let turned = found.frame([w1, w2, w3], argument, (zero, unit), zero);
-        found.start = Quaternions::of([attitude.w, x, v[middle], hand * z]).times(turned.inverse());
+        found.start = Quaternions::new(attitude.w, x, v[middle], hand * z) * turned.inverse();
         (found, serves)
     }
 
@@ -306,9 +306,9 @@ impl<S: Simd> Elliptic<S> {
         let w = [one * theta[0], two * theta[1], three * theta[2]];
         let (spin, more) = self.spin(w);
         let turn = self.frame(w, argument, (turn_sine, turn_cosine), more);
-        let Quaternions { w, v } = self.start.turned(turn);
-        let v = self.of_body(v.parts());
-        (Quaternions { w, v }, self.of_body(spin))
+        let own = self.start.turned(turn);
+        let attitude = Quaternions::of(own.w, self.of_body(own.vector().parts()));
+        (attitude, self.of_body(spin))
     }
 
     /// A vector along axes 1, 2 and 3 in those of the body.
@@ -316,11 +316,11 @@ impl<S: Simd> Elliptic<S> {
     fn of_body(&self, [x, y, z]: [Pack<S, 1>; 3]) -> Vectors<S, 1> {
         let z = self.hand * z;
         let parts = [self.above.select(x, z), y, self.above.select(z, x)];
-        Vectors {
-            x: self.along(0, parts),
-            y: self.along(1, parts),
-            z: self.along(2, parts),
-        }
+        Vectors::new(
+            self.along(0, parts),
+            self.along(1, parts),
+            self.along(2, parts),
+        )
     }
 
     /// That part along an axis of the body of those from the least moment to the largest; stores by index would have to end before loads of two numbers at once.
@@ -403,12 +403,12 @@ impl<S: Simd> Elliptic<S> {
         let minus_cosine = about_cosine * plus_cosine + about_sine * plus_sine;
         // By ψ about the third axis, back by the tilt about the second and back by the angle about the third.
         let (sine, cosine) = turn;
-        Quaternions::of([
+        Quaternions::new(
             tilt_cosine * (cosine * plus_cosine + sine * plus_sine),
             tilt_sine * (sine * minus_cosine + cosine * minus_sine),
             -tilt_sine * (cosine * minus_cosine - sine * minus_sine),
             tilt_cosine * (sine * plus_cosine - cosine * plus_sine),
-        ])
+        )
     }
 }
 

@@ -145,11 +145,11 @@ impl<S: Simd> Rotations<S> {
                 let moments = top.moments();
                 let across = moments[(axis + 1) % 3];
                 let [a, b, c] = moments;
-                let momentum = Vectors {
-                    x: a / across * spin.x,
-                    y: b / across * spin.y,
-                    z: c / across * spin.z,
-                };
+                let momentum = Vectors::new(
+                    a / across * spin.x,
+                    b / across * spin.y,
+                    c / across * spin.z,
+                );
                 let own = (1.0 - moments[axis] / across) * spin.parts()[axis];
                 Way::Precession(half_and_direction(momentum), own, axis)
             }
@@ -175,13 +175,10 @@ impl<S: Simd> Rotations<S> {
                 (self.attitude.turned(turn), self.spin)
             }
             Way::Precession((half, direction), own, axis) => {
-                let precessed = self.attitude.times(about(*direction, *half * time));
+                let precessed = self.attitude * about(*direction, *half * time);
                 let (sine, cosine) = sincos_in_lanes(0.5 * *own * time);
                 let along = Vectors::splat(time.simd(), UNITS[*axis]);
-                let turn = Quaternions {
-                    w: cosine,
-                    v: along.times(sine),
-                };
+                let turn = Quaternions::of(cosine, along * sine);
                 (precessed.turned(turn), self.back(*axis, sine, cosine))
             }
             Way::Elliptic(elliptic, rests) => {
@@ -203,7 +200,7 @@ impl<S: Simd> Rotations<S> {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let [a, b] = [spin[i], spin[j]];
         let (less, across) = (-2.0 * sine * sine, 2.0 * sine * cosine);
-        // As in [`Quaternions::turned`].
+        // As in [`Quaternion::turned`].
         let (x, dx) = sum(a, less * a + across * b);
         let (y, dy) = sum(b, less * b - across * a);
         // Squares, and what they lose by rounding.
@@ -212,7 +209,7 @@ impl<S: Simd> Rotations<S> {
         let part = 0.5 * lost / (xx + yy).max(f64::MIN_POSITIVE);
         (spin[i], spin[j]) = (x + (dx + part * x), y + (dy + part * y));
         let [x, y, z] = spin;
-        Vectors { x, y, z }
+        Vectors::new(x, y, z)
     }
 }
 
@@ -241,15 +238,12 @@ fn square<S: Simd>(v: Pack<S, 1>) -> (Pack<S, 1>, Pack<S, 1>) {
 fn half_and_direction<S: Simd>(v: Vectors<S, 1>) -> (Pack<S, 1>, Vectors<S, 1>) {
     let length = (v.x * v.x + v.y * v.y + v.z * v.z).sqrt();
     let divisor = length.le(0.0).select(1.0, length);
-    (0.5 * length, v.over(divisor))
+    (0.5 * length, v / divisor)
 }
 
 /// The rotation about a direction by twice this angle.
 #[inline(always)]
 fn about<S: Simd>(direction: Vectors<S, 1>, half: Pack<S, 1>) -> Quaternions<S> {
     let (sine, cosine) = sincos_in_lanes(half);
-    Quaternions {
-        w: cosine,
-        v: direction.times(sine),
-    }
+    Quaternions::of(cosine, direction * sine)
 }

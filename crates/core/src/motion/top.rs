@@ -1,8 +1,7 @@
 //! Euler's equations of a free body.
 
 use super::bounds::{SpinBounds, largest_acceleration, largest_spin};
-use crate::math::quaternion::Part;
-use crate::math::{Quaternion, Vector, Vectors};
+use crate::math::{Part, Quaternion, Vector, Vectors};
 use crate::shape::Top;
 use crate::simd::Pack;
 use pulp::Simd;

@@ -55,7 +55,7 @@ impl<'a, 'b> Follower<'a, 'b> {
         (seed, numbers): (u64, &[u64]),
     ) -> [Vectors<S, 1>; 2] {
         let (first, second) = (self.bodies[0].inverse_mass, self.bodies[1].inverse_mass);
-        let speed = normal.dot(two.minus(one)).max(0.0);
+        let speed = normal.dot(two - one).max(0.0);
         let mut chances = None;
         if self.law.deviation > 0.0 {
             let chances = chances.insert(0.0 * speed + 0.5);
@@ -65,7 +65,7 @@ impl<'a, 'b> Follower<'a, 'b> {
         }
         let coefficient = self.law.coefficient(speed, chances);
         let compliance = Pack::splat(speed.simd(), first + second);
-        let impulse = normal.times(Frictionless::impulse(coefficient, speed, compliance));
+        let impulse = normal * Frictionless::impulse(coefficient, speed, compliance);
         [impulse.mul_add(first, one), impulse.mul_add(-second, two)]
     }
 

@@ -216,8 +216,8 @@ pub(crate) fn approach<S: Simd>(
 ) -> Vectors<S, 1> {
     let second = u.cross(across);
     let back = (1.0 - b * b).max(0.0).sqrt();
-    let aside = across.times(b * c).plus(second.times(b * s));
-    aside.minus(u.times(back))
+    let aside = across * (b * c) + second * (b * s);
+    aside - u * back
 }
 
 /// The random numbers of successive encounters, or particles of a gas: those of a draw are computed for all of them, when the first asks for it.

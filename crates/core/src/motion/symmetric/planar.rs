@@ -99,13 +99,12 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for PlanarState<S, K> {
     fn in_space(&self) -> SpatialState<S, K> {
         let PlanarMotion { vx, vz, spin } = self.motion;
         let zero = Pack::splat(self.height.simd(), 0.0);
-        let vector = |x, y, z| Vectors { x, y, z };
         SpatialState {
             height: self.height,
-            axis: vector(self.sine, zero, self.cosine),
+            axis: Vectors::new(self.sine, zero, self.cosine),
             motion: SpatialMotion {
-                velocity: vector(vx, zero, vz),
-                precession: vector(zero, spin, zero),
+                velocity: Vectors::new(vx, zero, vz),
+                precession: Vectors::new(zero, spin, zero),
             },
         }
     }

@@ -4,7 +4,7 @@
 //! where **k** = **p**(**p**·**e**)/Ω² and **e** is the axis at the start (3).
 
 use super::{Attitude, Flight, SpatialMotion, SpatialState, State, SymmetricState};
-use crate::math::Vectors;
+use crate::math::{UNITS, Vector, Vectors};
 use crate::shape::{AxisMotion, Body};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
@@ -14,18 +14,10 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for SpatialState<S, K> {
 
     #[inline(always)]
     fn resting(simd: S, height: f64) -> Self {
-        let lane = |x| Pack::splat(simd, x);
-        let zero = Vectors {
-            x: lane(0.0),
-            y: lane(0.0),
-            z: lane(0.0),
-        };
+        let zero = Vectors::splat(simd, Vector::default());
         Self {
-            height: lane(height),
-            axis: Vectors {
-                z: lane(1.0),
-                ..zero
-            },
+            height: Pack::splat(simd, height),
+            axis: Vectors::splat(simd, UNITS[2]),
             motion: SpatialMotion {
                 velocity: zero,
                 precession: zero,
@@ -53,8 +45,7 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for SpatialState<S, K> {
 
     #[inline(always)]
     fn sine(&self) -> Pack<S, K> {
-        let Vectors { x, y, .. } = self.axis;
-        x.mul_add(x, y * y).sqrt()
+        self.axis.horizontal()
     }
 
     #[inline(always)]
@@ -220,24 +211,20 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
             motion,
             height,
         } = self.start;
-        let constant = motion.precession.times(self.share);
-        let leading = motion.precession.cross(axis).times(self.inverse);
+        let constant = motion.precession * self.share;
+        let leading = motion.precession.cross(axis) * self.inverse;
         let axis = leading.mul_add(
             attitude.sine,
-            axis.minus(constant).mul_add(attitude.cosine, constant),
+            (axis - constant).mul_add(attitude.cosine, constant),
         ); // (3)
         // One Newton step to unit length; rounding would otherwise accumulate over the impacts.
-        let axis = axis.times(axis.dot(axis).mul_add(-0.5, 1.5));
+        let axis = axis * axis.dot(axis).mul_add(-0.5, 1.5);
         let Vectors { x, y, .. } = motion.velocity;
         SpatialState {
             height,
             axis,
             motion: SpatialMotion {
-                velocity: Vectors {
-                    x: time.mul_add(self.slope, x), // (5)
-                    y,
-                    z: self.vz_at(time),
-                },
+                velocity: Vectors::new(time.mul_add(self.slope, x), y, self.vz_at(time)), // (5)
                 ..motion
             },
         }

@@ -69,17 +69,12 @@ impl State {
 
     /// The state in a single lane.
     pub(crate) fn in_lane(&self) -> SpatialState<Scalar, 1> {
-        let vector = |v: Vector| Vectors {
-            x: one(v.x),
-            y: one(v.y),
-            z: one(v.z),
-        };
         SpatialState {
             height: one(self.height),
-            axis: vector(self.axis),
+            axis: self.axis.in_lane(),
             motion: SpatialMotion {
-                velocity: vector(self.velocity),
-                precession: vector(self.precession),
+                velocity: self.velocity.in_lane(),
+                precession: self.precession.in_lane(),
             },
         }
     }

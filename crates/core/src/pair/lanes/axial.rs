@@ -111,8 +111,8 @@ impl<S: Simd> AxialFlight<S> {
     fn at(&self, (sine, cosine): (Pack<S, 1>, Pack<S, 1>)) -> [Vectors<S, 1>; 2] {
         let [along, second, third] = self.motion;
         let axis = third.mul_add(sine, second.mul_add(cosine, along));
-        let change = third.times(cosine).minus(second.times(sine));
-        [axis, change.times(self.rate)]
+        let change = third * cosine - second * sine;
+        [axis, change * self.rate]
     }
 
     /// The same with what turns it.
@@ -171,14 +171,13 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
         let square = self.precession.dot(self.precession);
         let rate = square.sqrt();
         let turns = Pack::splat(rate.simd(), 0.0).lt(rate);
-        let about = self
-            .axis
-            .or(turns, self.precession.times(1.0 / turns.select(rate, 1.0)));
+        let about = self.precession * (1.0 / turns.select(rate, 1.0));
+        let about = self.axis.or(turns, about);
         let third = about.cross(self.axis);
         let second = third.cross(about);
         let cosine = about.dot(self.axis);
         // What does not turn stays as long as it is: its projection on itself would be longer in each flight.
-        let along = self.axis.or(turns, about.times(cosine));
+        let along = self.axis.or(turns, about * cosine);
         let [one, two, three] = self.motion;
         self.motion = [
             one.or(fresh, along),
@@ -206,7 +205,7 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
         let [axis, _] = self.at((2.0 * s * c, c * c - s * s));
         // Of length 1: about Λ, or with the angle 0.
         let still = Pack::splat(time.simd(), 0.0).lt(self.rate);
-        let about = self.precession.times(1.0 / still.select(self.rate, 1.0));
+        let about = self.precession * (1.0 / still.select(self.rate, 1.0));
         let later = then(self.turned, about, half);
         self.axis = self.axis.or(lanes, axis);
         self.turned = self.turned.or(lanes, later);
@@ -246,7 +245,7 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
 
     #[inline(always)]
     fn arm(&self, place: Pack<S, 1>, normal: Vectors<S, 1>) -> Vectors<S, 1> {
-        self.axis.cross(normal).times(place)
+        self.axis.cross(normal) * place
     }
 
     #[inline(always)]
@@ -324,13 +323,11 @@ fn then<S: Simd>(
     about: Vectors<S, 1>,
     (sine, cosine): (Pack<S, 1>, Pack<S, 1>),
 ) -> Quaternions<S> {
-    let v = about.times(sine);
-    Quaternions {
-        w: cosine * turned.w - v.dot(turned.v),
-        v: turned
-            .v
-            .mul_add(cosine, v.mul_add(turned.w, v.cross(turned.v))),
-    }
+    let (v, own) = (about * sine, turned.vector());
+    Quaternions::of(
+        cosine * turned.w - v.dot(own),
+        own.mul_add(cosine, v.mul_add(turned.w, v.cross(own))),
+    )
 }
 
 impl<S: Simd> Encountering<S, AxialFlight<S>> {
@@ -361,7 +358,7 @@ impl<S: Simd> Encountering<S, AxialFlight<S>> {
     #[inline(always)]
     fn normal(&self, between: Vectors<S, 1>) -> Vectors<S, 1> {
         let none = self.normal.dot(self.normal).eq(0.0);
-        let along = between.times(1.0 / between.dot(between).sqrt());
+        let along = between * (1.0 / between.dot(between).sqrt());
         self.normal.or(none, along)
     }
 
@@ -444,12 +441,8 @@ impl<S: Simd> EndedRotations<S> {
             let (shape, body) = (&pair.shapes[i], &self.bodies[i]);
             let axis = Vectors::splat(body.own.simd(), UNITS[shape.axis]);
             let (sine, cosine) = sincos_in_lanes(0.5 * body.own * (1.0 - shape.ratio) * body.time);
-            let roll = Quaternions {
-                w: cosine,
-                v: axis.times(sine),
-            };
-            let rolled = body.attitude.times(roll);
-            let attitude = body.turned.times(rolled).normalized();
+            let rolled = body.attitude * Quaternions::of(cosine, axis * sine);
+            let attitude = (body.turned * rolled).normalized();
             let spins = attitude.inverse().rotate(body.precession);
             for lane in 0..self.count {
                 if let Some(Ok(end)) = &mut ends[self.jobs[lane]] {

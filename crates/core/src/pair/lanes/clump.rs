@@ -217,10 +217,6 @@ impl ClumpBody {
     #[inline(always)]
     fn changed<S: Simd>(&self, arm: Vectors<S, 1>) -> Vectors<S, 1> {
         let [a, b, c] = self.inverse_moments;
-        Vectors {
-            x: a * arm.x,
-            y: b * arm.y,
-            z: c * arm.z,
-        }
+        Vectors::new(a * arm.x, b * arm.y, c * arm.z)
     }
 }

@@ -418,7 +418,7 @@ impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
         }
         let [one, two] = &self.bodies;
         let y = two.reached(places[1], -1.0, one.reached(places[0], 1.0, self.apart));
-        (y.times(1.0 / y.dot(y).sqrt()), places, radius)
+        (y * (1.0 / y.dot(y).sqrt()), places, radius)
     }
 
     /// The centre of a body of a lane now.
@@ -519,9 +519,7 @@ impl<B: LaneBody> LaneEncounters<'_, '_, '_, B> {
         let apart = coefficient * speed;
         if let Some(hit) = &mut self.hit {
             let from = Vectors::splat(zero.simd(), Vector::default());
-            let firsts = one
-                .reached(places[0], 1.0, from)
-                .minus(normal.times(radius));
+            let firsts = one.reached(places[0], 1.0, from) - normal * radius;
             let mut lanes = bits(touched);
             while let Some(lane) = take(&mut lanes) {
                 let at = |pack: &Pack<S, 1>| pack.as_slice()[lane];
@@ -542,7 +540,7 @@ impl<B: LaneBody> LaneEncounters<'_, '_, '_, B> {
                 );
             }
         }
-        let impulse = normal.times(size);
+        let impulse = normal * size;
         all.impulse = normal.mul_add(size, all.impulse);
         all.moment = impulse.mul_add(all.clock, all.moment);
         all.velocity = impulse.mul_add(free, all.velocity);
