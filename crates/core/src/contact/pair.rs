@@ -24,7 +24,7 @@
 use super::certify::INVISIBLE;
 use super::plane::GapExpansion;
 use crate::math::Vector;
-use crate::motion::{BodyFrame, BodyPose, Turn};
+use crate::motion::{BodyFrame, BodyPose, SpinBounds, Turn};
 use crate::shape::{Feature, Piece, PieceKind, Round, Top};
 
 /// Most steps of a search.
@@ -156,7 +156,7 @@ impl<'a> PairSearch<'a> {
         };
         let apart = flight.velocity.mul_add(time, flight.apart);
         let [a, va] = poses[0].moves(place);
-        let bound = flight.turns[0].bounds[1] * first.reach;
+        let bound = flight.turns[0].bound() * first.reach;
         match second.kind {
             PieceKind::Ball(other, size) => {
                 let [b, vb] = poses[1].moves(other);
@@ -170,7 +170,7 @@ impl<'a> PairSearch<'a> {
                     normal,
                     distance,
                     spread: (change.dot(change) - rate * rate).max(0.0),
-                    bound: bound + flight.turns[1].bounds[1] * second.reach,
+                    bound: bound + flight.turns[1].bound() * second.reach,
                 })
             }
             PieceKind::Plane => Some(BallGap {
@@ -716,9 +716,11 @@ fn height(piece: &Piece, (u, change): (Vector, Vector), s: f64, normal: f64) -> 
 #[inline(always)]
 fn swings(piece: &Piece, turn: &Turn, n: Vector, speed: f64) -> [f64; 2] {
     let longer = if speed > 0.0 { 2.0_f64.sqrt() } else { 1.0 };
-    let Some(about) = turn.about else {
-        let [velocity, acceleration] = turn.bounds;
-        return [velocity * piece.reach, longer * acceleration * piece.reach];
+    let about = match turn {
+        Turn::Axis(_, _, about) => about,
+        Turn::Any(_, SpinBounds { fastest, whole, .. }) => {
+            return [fastest * piece.reach, longer * whole * piece.reach];
+        }
     };
     // The acceleration is across Λ.
     let across = n.cross(about.direction).norm();

@@ -13,7 +13,7 @@ pub use rotation::Rotation;
 pub(crate) use rotation::Rotations;
 pub use symmetric::State;
 pub(crate) use symmetric::{
-    Attitude, Flight, PlanarFlight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion,
-    SpatialState, SymmetricState,
+    Attitude, Flight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion, SpatialState,
+    SymmetricState,
 };
 pub(crate) use turn::{BodyFrame, BodyPose, Turn};

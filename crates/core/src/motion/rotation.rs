@@ -83,16 +83,6 @@ impl Rotation {
     pub(crate) fn later(&mut self, time: f64) -> (Quaternion, Vector) {
         Level::run_scalar(Later(self, time))
     }
-
-    /// The attitude at a time.
-    pub fn attitude(&mut self, time: f64) -> Quaternion {
-        self.at(time).0
-    }
-
-    /// ω in the axes of the body, at a time.
-    pub fn spin(&mut self, time: f64) -> Vector {
-        self.at(time).1
-    }
 }
 
 struct Begun<'a>(&'a Top, Quaternion, Vector);

@@ -2,20 +2,23 @@
 //!
 //! A point **p** on the axis **e** of a body with two equal moments J turns with it about the angular momentum **Λ** at the rate |Λ|/J, and
 //! |**p**″| = |p||**ω** × **e**||Λ|/J. The surface of a body of revolution about **e** turns about **Λ** at that rate, too: how it turns about **e** is not
-//! seen. Any other point has |**p**″| ≤ (1 + a/√3)Ω²|**p**| ([`SpinBounds`](super::SpinBounds)).
+//! seen. Any other point has |**p**″| ≤ (1 + a/√3)Ω²|**p**| ([`SpinBounds`]).
 
-use super::Rotation;
+use super::{Rotation, SpinBounds};
 use crate::math::{Quaternion, Symmetric, UNITS, Vector};
 use crate::shape::{Round, Symmetry, Top};
 use crate::simd::elementary::sincos;
 
 /// The rotation of a body during a flight.
-pub(crate) struct Turn {
-    way: TurnWay,
-    /// The largest velocity and acceleration of a point, per distance from the centre of mass; of a body of revolution, of a point on its axis.
-    pub bounds: [f64; 2],
-    /// Of a body of revolution.
-    pub about: Option<Precession>,
+#[expect(
+    clippy::large_enum_variant,
+    reason = "two live at a time, on the stack"
+)]
+pub(crate) enum Turn {
+    /// About the axis of this number: the part of it along **Λ**, that across and **Λ** × **e**/|Λ|.
+    Axis(usize, [Vector; 3], Precession),
+    /// Any, with the bounds on it.
+    Any(Rotation, SpinBounds),
 }
 
 /// The uniform rotation of a body of revolution.
@@ -28,16 +31,6 @@ pub(crate) struct Precession {
     /// Sine and cosine of the angle between both.
     pub sine: f64,
     pub cosine: f64,
-}
-
-#[expect(
-    clippy::large_enum_variant,
-    reason = "two live at a time, on the stack"
-)]
-enum TurnWay {
-    /// About the axis of this number: the part of it along **Λ**, that across and **Λ** × **e**/|Λ|, the rate.
-    Axis(usize, [Vector; 3], f64),
-    Any(Rotation),
 }
 
 /// A body at a time: its axes in space and **ω**, or an axis of it with **e**′ and **e**″, and **Λ**/J.
@@ -74,12 +67,7 @@ impl Turn {
     #[inline(always)]
     pub fn new(top: &Top, axis: Option<usize>, attitude: Quaternion, spin: Vector) -> Self {
         let Some(axis) = axis else {
-            let bounds = top.bounds(spin);
-            return Self {
-                way: TurnWay::Any(Rotation::begun(top, attitude, spin)),
-                bounds: [bounds.fastest, bounds.whole],
-                about: None,
-            };
+            return Self::Any(Rotation::begun(top, attitude, spin), top.bounds(spin));
         };
         let e = attitude.rotate(UNITS[axis]);
         let across = top.moments()[(axis + 1) % 3];
@@ -90,37 +78,32 @@ impl Turn {
         let second = third.cross(about);
         let cosine = about.dot(e);
         let along = about * cosine;
-        let sine = third.norm();
-        let speed = rate * sine;
-        Self {
-            way: TurnWay::Axis(axis, [along, second, third], rate),
-            bounds: [speed, rate * speed],
-            about: Some(Precession {
-                direction: about,
-                rate,
-                sine,
-                cosine,
-            }),
-        }
+        let precession = Precession {
+            direction: about,
+            rate,
+            sine: third.norm(),
+            cosine,
+        };
+        Self::Axis(axis, [along, second, third], precession)
     }
 
     /// The body at a time ≥ 0.
     #[inline(always)]
     pub fn at(&mut self, time: f64) -> BodyPose {
-        match &mut self.way {
-            TurnWay::Axis(axis, [along, second, third], rate) => {
-                let (sine, cosine) = sincos(*rate * time);
+        match self {
+            Self::Axis(axis, [along, second, third], about) => {
+                let rate = about.rate;
+                let (sine, cosine) = sincos(rate * time);
                 let level = third.mul_add(sine, *second * cosine);
-                let change = third.mul_add(cosine, *second * -sine) * *rate;
-                let bend = level * -(*rate * *rate);
-                let about = self.about.expect("it turns about an axis");
+                let change = third.mul_add(cosine, *second * -sine) * rate;
+                let bend = level * -(rate * rate);
                 BodyPose {
                     axis: Some(*axis),
                     motion: [*along + level, change, bend],
-                    spin: about.direction * about.rate,
+                    spin: about.direction * rate,
                 }
             }
-            TurnWay::Any(rotation) => {
+            Self::Any(rotation, _) => {
                 let (attitude, spin) = rotation.later(time);
                 BodyPose::new(attitude, spin)
             }
@@ -130,9 +113,18 @@ impl Turn {
     /// Attitude, and ω in the axes of the body, at a time ≥ 0; none of a body of which only the axis is followed.
     #[inline(always)]
     pub fn rotated(&mut self, time: f64) -> Option<(Quaternion, Vector)> {
-        match &mut self.way {
-            TurnWay::Axis(..) => None,
-            TurnWay::Any(rotation) => Some(rotation.later(time)),
+        match self {
+            Self::Axis(..) => None,
+            Self::Any(rotation, _) => Some(rotation.later(time)),
+        }
+    }
+
+    /// The largest acceleration of a point, per distance from the centre of mass; of a body of revolution, of a point on its axis.
+    #[inline(always)]
+    pub fn bound(&self) -> f64 {
+        match self {
+            Self::Axis(_, _, about) => about.rate * (about.rate * about.sine),
+            Self::Any(_, bounds) => bounds.whole,
         }
     }
 }

@@ -137,12 +137,11 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let max_cos_tilt = flight.max_cos_tilt();
         let rotation_bound =
             hull.curvature_bound(flight.amplitude(), max_cos_tilt) * flight.square();
-        let above = vz.mul_add(vz, 2.0 * F::GRAVITY * (height - hull.ceiling(max_cos_tilt)));
+        let above = vz.mul_add(vz, 2.0 * (height - hull.ceiling(max_cos_tilt)));
         let root = above.sqrt();
-        // Without gravity a body that rises does not come back, and nothing is skipped.
-        let reaches = !above.le(0.0) & Mask::splat(above.simd(), F::GRAVITY > 0.0);
+        let reaches = !above.le(0.0);
         self.rotation_bound = rotation_bound;
-        self.curvature_bound = F::GRAVITY + rotation_bound;
+        self.curvature_bound = 1.0 + rotation_bound;
         self.up = reaches.select(vz - root, f64::INFINITY);
         self.down = reaches.select(vz + root, f64::INFINITY);
     }
@@ -180,10 +179,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let instant = self.beginning();
         let on = self.last_contact.sphere;
         let part = hull.part(!on.lt(0.0));
-        let held = !on.eq(0.0)
-            & hull
-                .curvature(&part, &instant.axis_motion, -F::GRAVITY)
-                .le(0.0);
+        let held = !on.eq(0.0) & hull.curvature(&part, &instant.axis_motion, -1.0).le(0.0);
         if H::TWO {
             let (_, still) = instant.opening(&part, hull);
             let other = self.gap(&instant, hull.part(on.lt(0.0)), hull);

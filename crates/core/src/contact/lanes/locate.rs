@@ -121,7 +121,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
             attitude,
             width,
             rate,
-            curvature: hull.curvature(part, &self.flight.axis_motion(attitude), -F::GRAVITY),
+            curvature: hull.curvature(part, &self.flight.axis_motion(attitude), -1.0),
         }
     }
 
@@ -262,7 +262,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let speed = step.mul_add(-step.mul_add(0.5 * third, slack), evaluation.gap.closing);
         let inverse = 1.0 / speed;
         let newton = left * inverse;
-        let curvature = step.mul_add(third, second - F::GRAVITY); // f″
+        let curvature = step.mul_add(third, second - 1.0); // f″
         step + newton.mul_add(0.5 * curvature * newton * inverse, newton)
     }
 }

@@ -4,8 +4,7 @@ use super::interleaved::GROUPS;
 use crate::law::{AxialCompliance, Components, Contact, Response};
 use crate::math::Vectors;
 use crate::motion::{
-    Flight, PlanarFlight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion, SpatialState,
-    SymmetricState,
+    Flight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion, SpatialState, SymmetricState,
 };
 use crate::shape::{Body, Hull, HullPart};
 use crate::simd::{Mask, Pack};
@@ -28,7 +27,7 @@ pub(crate) struct Planar;
 pub(crate) struct Spatial;
 
 impl Dimension for Planar {
-    type Flight<S: Simd> = PlanarFlight<S, 1>;
+    type Flight<S: Simd> = PlanarState<S, 1>;
     const SPACE: bool = false;
 }
 

@@ -18,6 +18,7 @@ use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::simd::Pack;
 use pulp::Simd;
+use turning::Turning;
 
 /// The condition that ends the phase of restitution, after that of compression. The three hypotheses agree as long as the slip
 /// velocity neither vanishes nor changes its direction.
@@ -129,7 +130,13 @@ impl ImpulseRule for Coulomb {
         responses: &mut [Response<Pack<S, 1>>],
     ) {
         if SPACE && self.friction > 0.0 {
-            turning::respond(self, contacts, restitution, responses);
+            let simd = contacts[0].velocity.normal.simd();
+            simd.vectorize(Turning {
+                rule: self,
+                contacts,
+                restitution,
+                responses,
+            });
         } else {
             one_by_one::<S, SPACE>(self, contacts, restitution, responses);
         }

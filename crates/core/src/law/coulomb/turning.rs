@@ -1307,29 +1307,12 @@ impl<S: Simd> OngoingImpacts<S> {
     }
 }
 
-/// Answers contacts that may slip in any direction, μ > 0.
-#[inline(always)]
-pub(super) fn respond<S: Simd>(
-    rule: &Coulomb,
-    contacts: &[Contact<Pack<S, 1>>],
-    restitution: &[Pack<S, 1>],
-    responses: &mut [Response<Pack<S, 1>>],
-) {
-    let simd = contacts[0].velocity.normal.simd();
-    simd.vectorize(Turning {
-        rule,
-        contacts,
-        restitution,
-        responses,
-    });
-}
-
-/// [`respond`], compiled in a function of its own: it is long.
-struct Turning<'a, S: Simd> {
-    rule: &'a Coulomb,
-    contacts: &'a [Contact<Pack<S, 1>>],
-    restitution: &'a [Pack<S, 1>],
-    responses: &'a mut [Response<Pack<S, 1>>],
+/// Contacts that may slip in any direction, μ > 0, to be answered in a function of its own: it is long.
+pub(super) struct Turning<'a, S: Simd> {
+    pub rule: &'a Coulomb,
+    pub contacts: &'a [Contact<Pack<S, 1>>],
+    pub restitution: &'a [Pack<S, 1>],
+    pub responses: &'a mut [Response<Pack<S, 1>>],
 }
 
 impl<S: Simd> WithSimd for Turning<'_, S> {

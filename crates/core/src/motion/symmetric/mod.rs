@@ -12,7 +12,7 @@ mod planar;
 mod spatial;
 mod state;
 
-pub(crate) use planar::{PlanarFlight, PlanarMotion, PlanarState};
+pub(crate) use planar::{PlanarMotion, PlanarState};
 pub(crate) use spatial::SpatialFlight;
 pub use state::State;
 pub(crate) use state::{SpatialMotion, SpatialState};
@@ -97,9 +97,6 @@ pub(crate) trait SymmetricState<S: Simd, const K: usize>: Copy {
 
 /// A flight that starts from a [`SymmetricState`] at time 0.
 pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
-    /// Acceleration towards the plane: 1, the core's unit, or 0 for a flight without gravity.
-    const GRAVITY: f64;
-
     /// Position and motion.
     type State: SymmetricState<S, K>;
 
@@ -131,15 +128,13 @@ pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
     /// Height of the centre of mass above the hull's level at `time` (5).
     #[inline(always)]
     fn height_at(&self, time: Pack<S, K>) -> Pack<S, K> {
-        time.mul_add(
-            time.mul_add(-0.5 * Self::GRAVITY, self.start().vz()),
-            self.start().height(),
-        ) // (5)
+        let start = self.start();
+        time.mul_add(time.mul_add(-0.5, start.vz()), start.height()) // (5)
     }
 
     /// Its vertical velocity at `time`.
     #[inline(always)]
     fn vz_at(&self, time: Pack<S, K>) -> Pack<S, K> {
-        time.mul_add(-Self::GRAVITY, self.start().vz()) // (5)
+        self.start().vz() - time // (5)
     }
 }

@@ -6,7 +6,7 @@ use crate::shape::{AxisMotion, Body};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// Position and motion.
+/// Position and motion, and the flight from there.
 #[derive(Clone, Copy)]
 pub(crate) struct PlanarState<S: Simd, const K: usize> {
     pub height: Pack<S, K>,
@@ -122,36 +122,29 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for PlanarState<S, K> {
     }
 }
 
-/// A flight: the state at its start.
-#[derive(Clone, Copy)]
-pub(crate) struct PlanarFlight<S: Simd, const K: usize> {
-    start: PlanarState<S, K>,
-}
-
-impl<S: Simd, const K: usize> Flight<S, K> for PlanarFlight<S, K> {
-    const GRAVITY: f64 = 1.0;
-
-    type State = PlanarState<S, K>;
+/// A flight is the state at its start.
+impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
+    type State = Self;
 
     /// The slope is 0: over an incline the motion is spatial, because gravity has a component outside the plane of the axis.
     #[inline(always)]
-    fn new(start: PlanarState<S, K>, _: f64) -> Self {
-        Self { start }
+    fn new(start: Self, _: f64) -> Self {
+        start
     }
 
     #[inline(always)]
     fn depart(&mut self, motion: PlanarMotion<S, K>, _: f64) {
-        self.start.motion = motion;
+        self.motion = motion;
     }
 
     #[inline(always)]
-    fn start(&self) -> &PlanarState<S, K> {
-        &self.start
+    fn start(&self) -> &Self {
+        self
     }
 
     #[inline(always)]
     fn rate(&self) -> Pack<S, K> {
-        self.start.motion.spin
+        self.motion.spin
     }
 
     #[inline(always)]
@@ -161,17 +154,17 @@ impl<S: Simd, const K: usize> Flight<S, K> for PlanarFlight<S, K> {
 
     #[inline(always)]
     fn amplitude(&self) -> Pack<S, K> {
-        Pack::splat(self.start.height.simd(), 1.0)
+        Pack::splat(self.height.simd(), 1.0)
     }
 
     #[inline(always)]
     fn max_cos_tilt(&self) -> Pack<S, K> {
-        Pack::splat(self.start.height.simd(), 1.0)
+        Pack::splat(self.height.simd(), 1.0)
     }
 
     #[inline(always)]
     fn attitude(&self, (sin, cos): (Pack<S, K>, Pack<S, K>)) -> Attitude<S, K> {
-        self.start.attitude().after(sin, cos)
+        self.now().after(sin, cos)
     }
 
     #[inline(always)]
@@ -187,34 +180,34 @@ impl<S: Simd, const K: usize> Flight<S, K> for PlanarFlight<S, K> {
 
     #[inline(always)]
     fn axis_motion_at_start(&self) -> AxisMotion<S, K> {
-        self.axis_motion(self.start.attitude())
+        self.axis_motion(self.now())
     }
 
     #[inline(always)]
-    fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> PlanarState<S, K> {
+    fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Self {
         let Attitude { sine, cosine } = attitude;
         // One Newton step to unit length; rounding would otherwise accumulate over the impacts.
         let length = sine.mul_add(sine, cosine * cosine).mul_add(-0.5, 1.5);
-        PlanarState {
-            height: self.start.height,
+        Self {
+            height: self.height,
             sine: sine * length,
             cosine: cosine * length,
             motion: PlanarMotion {
                 vz: self.vz_at(time),
-                ..self.start.motion
+                ..self.motion
             },
         }
     }
 
     #[inline(always)]
-    fn end(&mut self, state: PlanarState<S, K>, height: Pack<S, K>) {
-        self.start = PlanarState { height, ..state };
+    fn end(&mut self, state: Self, height: Pack<S, K>) {
+        *self = Self { height, ..state };
     }
 }
 
 impl<S: Simd, const K: usize> PlanarState<S, K> {
     #[inline(always)]
-    fn attitude(&self) -> Attitude<S, K> {
+    fn now(&self) -> Attitude<S, K> {
         Attitude {
             sine: self.sine,
             cosine: self.cosine,

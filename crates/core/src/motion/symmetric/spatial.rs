@@ -117,8 +117,6 @@ pub(crate) struct SpatialFlight<S: Simd, const K: usize> {
 const SLOWEST: f64 = 1e-300;
 
 impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
-    const GRAVITY: f64 = 1.0;
-
     type State = SpatialState<S, K>;
 
     #[inline(always)]
