@@ -45,30 +45,6 @@ trait ImpulseRule {
         contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
         normal: Pack<S, 1>,
     ) -> Response<Pack<S, 1>>;
-
-    /// The responses to vectors of contacts of bodies of revolution.
-    #[inline(always)]
-    fn respond_all<S: Simd, const SPACE: bool>(
-        &self,
-        contacts: &[Contact<Pack<S, 1>>],
-        normal: &[Pack<S, 1>],
-        responses: &mut [Response<Pack<S, 1>>],
-    ) {
-        one_by_one::<S, SPACE>(self, contacts, normal, responses);
-    }
-}
-
-/// Those of contacts that have nothing to do with each other.
-#[inline(always)]
-fn one_by_one<S: Simd, const SPACE: bool>(
-    rule: &(impl ImpulseRule + ?Sized),
-    contacts: &[Contact<Pack<S, 1>>],
-    normal: &[Pack<S, 1>],
-    responses: &mut [Response<Pack<S, 1>>],
-) {
-    for (i, (contact, response)) in contacts.iter().zip(responses).enumerate() {
-        *response = rule.respond::<S, SPACE>(contact, normal[i]);
-    }
 }
 
 rule::laws! {

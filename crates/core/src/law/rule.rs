@@ -2,7 +2,7 @@
 
 use super::{
     Answer, Compliance, Components, Contact, CustomLaw, Frictionless, ImpulseFunction,
-    MOST_CONTACTS, Material, Normal, Respond, Response, Rule, normal::scattered,
+    MOST_CONTACTS, Material, Normal, Respond, Response, Rule, coulomb::Turning, normal::scattered,
     tangential::Steady,
 };
 use crate::Error;
@@ -59,7 +59,9 @@ macro_rules! laws {
             ) {
                 match self {
                     $(Self::$law(law) => {
-                        law.respond_all::<S, SPACE>(contacts, normal, responses);
+                        for (i, (contact, response)) in contacts.iter().zip(responses).enumerate() {
+                            *response = law.respond::<S, SPACE>(contact, normal[i]);
+                        }
                     }),*
                 }
             }
@@ -244,7 +246,14 @@ impl<S: Simd, const SPACE: bool> WithSimd for Choice<'_, '_, S, SPACE> {
             let chances = law.scatters().then(|| chances[i]);
             normal[i] = law.coefficient(contact.approach_speed(), chances);
         }
-        law.rule
-            .respond_all::<S, SPACE>(contacts, &normal, responses);
+        match &law.rule {
+            Rule::Coulomb(rule) if SPACE && rule.turns() => simd.vectorize(Turning {
+                rule,
+                contacts,
+                restitution: &normal,
+                responses,
+            }),
+            rule => rule.respond_all::<S, SPACE>(contacts, &normal, responses),
+        }
     }
 }

@@ -11,14 +11,12 @@ mod planar;
 mod slipping;
 mod turning;
 
-use super::{
-    Compliant, Components, Contact, Creation, ImpulseRule, LawKind, Response, Slip, one_by_one,
-};
+use super::{Compliant, Components, Contact, Creation, ImpulseRule, LawKind, Response, Slip};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::simd::Pack;
 use pulp::Simd;
-use turning::Turning;
+pub(super) use turning::Turning;
 
 /// The condition that ends the phase of restitution, after that of compression. The three hypotheses agree as long as the slip
 /// velocity neither vanishes nor changes its direction.
@@ -106,6 +104,12 @@ impl Coulomb {
             hypothesis,
         })
     }
+
+    /// True if a slip in space may turn; some contacts then take much longer than others, so that [`Turning`] lets them share the lanes.
+    #[inline(always)]
+    pub(super) fn turns(&self) -> bool {
+        self.friction > 0.0
+    }
 }
 
 impl ImpulseRule for Coulomb {
@@ -119,27 +123,6 @@ impl ImpulseRule for Coulomb {
         contact
             .compliance
             .slide(self, contact.velocity, restitution)
-    }
-
-    /// In space the slip may turn, and some contacts take much longer than others: they share the lanes.
-    #[inline(always)]
-    fn respond_all<S: Simd, const SPACE: bool>(
-        &self,
-        contacts: &[Contact<Pack<S, 1>>],
-        restitution: &[Pack<S, 1>],
-        responses: &mut [Response<Pack<S, 1>>],
-    ) {
-        if SPACE && self.friction > 0.0 {
-            let simd = contacts[0].velocity.normal.simd();
-            simd.vectorize(Turning {
-                rule: self,
-                contacts,
-                restitution,
-                responses,
-            });
-        } else {
-            one_by_one::<S, SPACE>(self, contacts, restitution, responses);
-        }
     }
 }
 

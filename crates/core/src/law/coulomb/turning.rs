@@ -1308,7 +1308,7 @@ impl<S: Simd> OngoingImpacts<S> {
 }
 
 /// Contacts that may slip in any direction, μ > 0, to be answered in a function of its own: it is long.
-pub(super) struct Turning<'a, S: Simd> {
+pub(in crate::law) struct Turning<'a, S: Simd> {
     pub rule: &'a Coulomb,
     pub contacts: &'a [Contact<Pack<S, 1>>],
     pub restitution: &'a [Pack<S, 1>],
