@@ -134,9 +134,8 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let flight = &self.flight;
         let start = flight.start();
         let (height, vz) = (start.height(), start.vz());
-        let max_cos_tilt = flight.max_cos_tilt();
-        let rotation_bound =
-            hull.curvature_bound(flight.amplitude(), max_cos_tilt) * flight.square();
+        let [square, amplitude, max_cos_tilt] = flight.bounds();
+        let rotation_bound = hull.curvature_bound(amplitude, max_cos_tilt) * square;
         let above = vz.mul_add(vz, 2.0 * (height - hull.ceiling(max_cos_tilt)));
         let root = above.sqrt();
         let reaches = !above.le(0.0);

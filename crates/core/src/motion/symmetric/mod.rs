@@ -106,24 +106,24 @@ pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
     fn start(&self) -> &Self::State;
     /// Angular velocity Ω of the axis, up to its sign.
     fn rate(&self) -> Pack<S, K>;
-    /// Ω².
-    fn square(&self) -> Pack<S, K>;
-    /// A bound on the amplitude A of e_z.
-    fn amplitude(&self) -> Pack<S, K>;
-    /// A bound on |e_z|, |c| + A, for any flight time.
-    fn max_cos_tilt(&self) -> Pack<S, K>;
+    /// Ω², and bounds for any flight time: on the amplitude A of e_z, and on |e_z|, |c| + A.
+    fn bounds(&self) -> [Pack<S, K>; 3];
     /// The attitude after a rotation by Ωt, of which sine and cosine are given.
     fn attitude(&self, turned: (Pack<S, K>, Pack<S, K>)) -> Attitude<S, K>;
     /// e_z and its time derivatives at an attitude (3).
     fn axis_motion(&self, attitude: Attitude<S, K>) -> AxisMotion<S, K>;
     /// e_z and its time derivatives at the start.
     fn axis_motion_at_start(&self) -> AxisMotion<S, K>;
-    /// Replaces the flight by one that starts at the same position with another motion.
-    fn depart(&mut self, motion: <Self::State as SymmetricState<S, K>>::Motion, slope: f64);
     /// The state at `time`. Its height is left at that of the start, because at a contact the hull gives it more accurately.
     fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Self::State;
     /// Ends the flight: `state`, with the `height` at which the body touches, replaces the start.
     fn end(&mut self, state: Self::State, height: Pack<S, K>);
+
+    /// Replaces the flight by one that starts at the same position with another motion.
+    #[inline(always)]
+    fn depart(&mut self, motion: <Self::State as SymmetricState<S, K>>::Motion, slope: f64) {
+        *self = Self::new(self.start().with_motion(motion), slope);
+    }
 
     /// Height of the centre of mass above the hull's level at `time` (5).
     #[inline(always)]

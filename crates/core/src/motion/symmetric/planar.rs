@@ -133,11 +133,6 @@ impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
     }
 
     #[inline(always)]
-    fn depart(&mut self, motion: PlanarMotion<S, K>, _: f64) {
-        self.motion = motion;
-    }
-
-    #[inline(always)]
     fn start(&self) -> &Self {
         self
     }
@@ -148,18 +143,9 @@ impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
     }
 
     #[inline(always)]
-    fn square(&self) -> Pack<S, K> {
-        self.rate() * self.rate()
-    }
-
-    #[inline(always)]
-    fn amplitude(&self) -> Pack<S, K> {
-        Pack::splat(self.height.simd(), 1.0)
-    }
-
-    #[inline(always)]
-    fn max_cos_tilt(&self) -> Pack<S, K> {
-        Pack::splat(self.height.simd(), 1.0)
+    fn bounds(&self) -> [Pack<S, K>; 3] {
+        let (rate, one) = (self.rate(), Pack::splat(self.height.simd(), 1.0));
+        [rate * rate, one, one]
     }
 
     #[inline(always)]
@@ -169,7 +155,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
 
     #[inline(always)]
     fn axis_motion(&self, attitude: Attitude<S, K>) -> AxisMotion<S, K> {
-        let square = self.square();
+        let square = self.rate() * self.rate();
         AxisMotion {
             cos_tilt: attitude.cosine,
             rate: -self.rate() * attitude.sine,

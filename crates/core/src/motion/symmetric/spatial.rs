@@ -146,11 +146,6 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
     }
 
     #[inline(always)]
-    fn depart(&mut self, motion: SpatialMotion<S, K>, slope: f64) {
-        *self = Self::new(self.start.with_motion(motion), slope);
-    }
-
-    #[inline(always)]
     fn start(&self) -> &SpatialState<S, K> {
         &self.start
     }
@@ -161,18 +156,9 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
     }
 
     #[inline(always)]
-    fn square(&self) -> Pack<S, K> {
-        self.square
-    }
-
-    #[inline(always)]
-    fn amplitude(&self) -> Pack<S, K> {
-        self.amplitude
-    }
-
-    #[inline(always)]
-    fn max_cos_tilt(&self) -> Pack<S, K> {
-        self.centre.abs() + self.amplitude
+    fn bounds(&self) -> [Pack<S, K>; 3] {
+        let highest = self.centre.abs() + self.amplitude;
+        [self.square, self.amplitude, highest]
     }
 
     #[inline(always)]
