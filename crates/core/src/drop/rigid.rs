@@ -278,7 +278,7 @@ impl Pose<Scalar> for RigidPose<'_> {
     }
 
     fn axis(&self) -> Vectors<Scalar, 1> {
-        Vector::new(f64::NAN, f64::NAN, f64::NAN).in_lane()
+        lane(Vector::new(f64::NAN, f64::NAN, f64::NAN))
     }
 
     fn attitude(&self) -> [Lane; 4] {
@@ -287,15 +287,15 @@ impl Pose<Scalar> for RigidPose<'_> {
     }
 
     fn velocities(&self) -> [Vectors<Scalar, 1>; 2] {
-        [self.before, self.after].map(|state| state.velocity.in_lane())
+        [self.before, self.after].map(|state| lane(state.velocity))
     }
 
     fn spin_before(&self) -> Vectors<Scalar, 1> {
-        self.before.attitude.rotate(self.before.spin).in_lane()
+        lane(self.before.attitude.rotate(self.before.spin))
     }
 
     fn spin_after(&self) -> Vectors<Scalar, 1> {
-        self.after.attitude.rotate(self.after.spin).in_lane()
+        lane(self.after.attitude.rotate(self.after.spin))
     }
 }
 

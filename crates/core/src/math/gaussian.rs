@@ -1,6 +1,6 @@
 //! The normal distribution: its tail and its quantiles.
 
-use crate::simd::elementary::{exp_in_lanes, ln};
+use crate::simd::elementary::{exp_in_lanes, ln, polynomial};
 use crate::simd::one;
 
 /// The probability above x ≥ 0 of the standard normal distribution φ; 0 where it is below 10⁻¹⁶ of that below. NaN, which a lane without
@@ -41,25 +41,22 @@ pub(crate) fn quantile(p: f64) -> f64 {
     let q = p - 0.5;
     if q.abs() <= 0.425 {
         let r = q.mul_add(-q, 0.180_625);
-        return q * ratio(&MIDDLE, r);
+        return q * ratio(MIDDLE, r);
     }
     let r = (-ln(if q < 0.0 { p } else { 1.0 - p })).sqrt();
     let size = if r <= 5.0 {
-        ratio(&NEAR, r - 1.6)
+        ratio(NEAR, r - 1.6)
     } else {
-        ratio(&FAR, r - 5.0)
+        ratio(FAR, r - 5.0)
     };
     size.copysign(q)
 }
 
 /// The quotient of two polynomials.
 #[inline(always)]
-fn ratio(coefficients: &[[f64; 8]; 2], x: f64) -> f64 {
-    let [above, below] = coefficients.map(|c| {
-        let highest_first = c.iter().rev();
-        highest_first.fold(0.0_f64, |sum, &c| sum.mul_add(x, c))
-    });
-    above / below
+fn ratio([above, below]: [[f64; 8]; 2], x: f64) -> f64 {
+    let ratio = polynomial(above, one(x)) / polynomial(below, one(x));
+    ratio.as_slice()[0]
 }
 
 /// Coefficients of x⁰, x¹, ... above and below, in the middle of the distribution, beyond, and far out.

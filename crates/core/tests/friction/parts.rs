@@ -136,7 +136,7 @@ fn an_impact_ends_after_the_most_panels() {
     };
     let mut impacts = case.impacts(0.99, 0.01, Hypothesis::Newton);
     impacts.goal.rebound = one(f64::MAX);
-    impacts.origin.panels = one(MOST_PANELS - 1.0);
+    impacts.panels = one(MOST_PANELS - 1.0);
     impacts.stop();
     assert!(!impacts.course.over.any());
     impacts.advance();

@@ -179,13 +179,20 @@ in_lanes! {
 }
 
 in_lanes! {
-    /// The condition that ends the restitution.
+    /// The condition that ends the restitution, and what else does not change.
     struct Goal {
         restitution,
         /// |v_c^n| before the impact.
         approach,
         /// ε_n|v_c^n|, Newton's goal.
         rebound,
+        /// The unit of the velocities.
+        scale,
+        ; masks:
+        /// By symmetry such a slip does not turn.
+        aside,
+        /// On which side **w** is.
+        left,
         ; shared:
         hypothesis: Hypothesis,
     }
@@ -1151,28 +1158,14 @@ impl<S: Simd> VanishingSlip<S> {
 /// Panels after which the slip is taken to have vanished.
 const MOST_PANELS: f64 = 1000.0;
 
-in_lanes! {
-    /// What an impact needs besides its course.
-    struct Origin {
-        /// Panels so far.
-        panels,
-        /// The unit of the velocities.
-        scale,
-        ; masks:
-        /// By symmetry such a slip does not turn.
-        aside,
-        /// On which side **w** is.
-        left,
-    }
-}
-
 /// Impacts under way, one in each lane.
 #[derive(Clone, Copy)]
 struct OngoingImpacts<S: Simd> {
     rates: Rates<S>,
     goal: Goal<S>,
     course: Course<S>,
-    origin: Origin<S>,
+    /// Panels so far.
+    panels: Pack<S, 1>,
 }
 
 impl<S: Simd> OngoingImpacts<S> {
@@ -1219,14 +1212,12 @@ impl<S: Simd> OngoingImpacts<S> {
                 restitution,
                 approach: speed * unit,
                 rebound: restitution * speed * unit,
-            },
-            course,
-            origin: Origin {
-                panels: zero,
                 scale,
                 aside: along.eq(0.0) & nu.eq(0.0),
                 left: across.lt(0.0),
             },
+            course,
+            panels: zero,
         }
     }
 
@@ -1237,7 +1228,7 @@ impl<S: Simd> OngoingImpacts<S> {
             rates,
             goal,
             course,
-            origin,
+            panels,
         } = self;
         // **u** along the slip, or the way that K_nu drives it.
         let back = course.u.lt(0.0) | course.u.eq(0.0) & rates.nu.lt(0.0);
@@ -1247,7 +1238,7 @@ impl<S: Simd> OngoingImpacts<S> {
         // What is left is a straight line in p where the slip has vanished, or goes on along **u** for ever.
         let straight = course.w.le(VANISHED) & rates.decay.le(0.0) & course.y.lt(1.0);
         let straight = straight & !course.is_late(goal);
-        let vanished = course.slip.le(VANISHED) | straight | !origin.panels.lt(MOST_PANELS);
+        let vanished = course.slip.le(VANISHED) | straight | !panels.lt(MOST_PANELS);
         let stop = VanishingSlip::new(rates, course);
         let candidates = (stop.reached | vanished) & !course.over;
         if candidates.any() {
@@ -1256,7 +1247,7 @@ impl<S: Simd> OngoingImpacts<S> {
             let last = stops & candidates;
             let mut end = Course::choose(vanished, course, &stopped);
             end.finish(rates, goal);
-            end.over = Mask::splat(origin.panels.simd(), true);
+            end.over = Mask::splat(panels.simd(), true);
             *course = Course::choose(last, &end, course);
         }
     }
@@ -1284,23 +1275,21 @@ impl<S: Simd> OngoingImpacts<S> {
         again.limit = 0.5 * length;
         let next = Course::choose(back, &again, &next);
         *course = Course::choose(course.over, course, &next);
-        self.origin.panels = self.origin.panels + 1.0;
+        self.panels = self.panels + 1.0;
     }
 
     /// The answers to those that are over.
     #[inline(always)]
     fn answer(&self) -> Response<Pack<S, 1>> {
-        let (course, origin) = (&self.course, &self.origin);
-        let scale = origin.scale;
+        let (course, goal) = (&self.course, &self.goal);
+        let scale = goal.scale;
         // A plastic contact is not left: rounding must not end its stay.
-        let plastic = self.goal.restitution.eq(0.0);
+        let plastic = goal.restitution.eq(0.0);
         Response {
             impulse: Components {
                 normal: course.normal * scale,
-                along: origin
-                    .aside
-                    .select(0.0, course.along * course.mirror * scale),
-                across: origin.left.select(-course.across, course.across) * scale,
+                along: goal.aside.select(0.0, course.along * course.mirror * scale),
+                across: goal.left.select(-course.across, course.across) * scale,
             },
             separation_speed: plastic.select(0.0, course.v.max(0.0)) * scale,
         }

@@ -3,7 +3,7 @@
 use super::SymmetricState;
 use crate::math::{Vector, Vectors};
 use crate::shape::{Body, Sphere};
-use crate::simd::{Pack, elementary, one};
+use crate::simd::{Pack, elementary};
 use pulp::{Scalar, Simd};
 
 /// Position and motion of one particle at its release, or just before or after an impact, in the core's units. The horizontal
@@ -69,14 +69,9 @@ impl State {
 
     /// The state in a single lane.
     pub(crate) fn in_lane(&self) -> SpatialState<Scalar, 1> {
-        SpatialState {
-            height: one(self.height),
-            axis: self.axis.in_lane(),
-            motion: SpatialMotion {
-                velocity: self.velocity.in_lane(),
-                precession: self.precession.in_lane(),
-            },
-        }
+        let mut state = SpatialState::resting(Scalar::new(), 0.0);
+        state.put(0, self);
+        state
     }
 }
 

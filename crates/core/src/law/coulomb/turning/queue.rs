@@ -1,7 +1,7 @@
 //! Contacts that take more than one step, out of many vectors: they wait in a queue for a lane, so that no lane is idle while others
 //! are under way.
 
-use super::{Course, Goal, OngoingImpacts, Origin, Rates};
+use super::{Course, Goal, OngoingImpacts, Rates};
 use crate::law::{Contact, Coulomb, Response};
 use crate::simd::{LANES, Mask, Pack};
 use pulp::Simd;
@@ -17,7 +17,7 @@ impl<S: Simd> OngoingImpacts<S> {
             rates: Rates::choose(mask, &others.rates, &self.rates),
             goal: Goal::choose(mask, &others.goal, &self.goal),
             course: Course::choose(mask, &others.course, &self.course),
-            origin: Origin::choose(mask, &others.origin, &self.origin),
+            panels: mask.select(others.panels, self.panels),
         };
     }
 
