@@ -136,26 +136,15 @@ impl<S: Simd, const K: usize> WithSimd for Coefficients<'_, '_, S, K> {
     }
 }
 
-impl From<f64> for Normal<'_> {
-    fn from(value: f64) -> Self {
-        Self::Constant(value)
-    }
+/// What a normal coefficient is made of.
+macro_rules! made_of {
+    ($($kind:ty: $variant:ident),*) => {
+        $(impl<'a> From<$kind> for Normal<'a> {
+            fn from(given: $kind) -> Self {
+                Self::$variant(given)
+            }
+        })*
+    };
 }
 
-impl From<Viscoelastic> for Normal<'_> {
-    fn from(material: Viscoelastic) -> Self {
-        Self::Viscoelastic(material)
-    }
-}
-
-impl From<Plastic> for Normal<'_> {
-    fn from(material: Plastic) -> Self {
-        Self::Plastic(material)
-    }
-}
-
-impl<'a> From<Tabulated<'a>> for Normal<'a> {
-    fn from(table: Tabulated<'a>) -> Self {
-        Self::Tabulated(table)
-    }
-}
+made_of!(f64: Constant, Viscoelastic: Viscoelastic, Plastic: Plastic, Tabulated<'a>: Tabulated);
