@@ -2,6 +2,7 @@
 
 use super::{Answer, AxialCompliance, Compliance, Compliant, Components, Contact, Response};
 use crate::Fault;
+use crate::math::flat::{rotate, rotate_back};
 use crate::math::{Symmetric, Vector};
 use std::fmt;
 
@@ -108,25 +109,19 @@ impl<'a> CustomLaw<'a> {
     }
 
     /// The answer to a contact of a body of revolution whose **u** has these components along x and y.
-    pub(crate) fn respond(&self, contact: &Contact, along: [f64; 2]) -> Result<Response, Fault> {
-        let [x, y] = along;
-        let Components {
-            normal,
-            along,
-            across,
-        } = contact.velocity;
-        let velocity = Vector::new(x * along - y * across, y * along + x * across, normal);
-        let Answer {
-            impulse,
-            separation_speed,
-        } = self.answer(&contact.compliance.turned([x, y]), velocity)?;
+    pub(crate) fn respond(&self, contact: &Contact, u: [f64; 2]) -> Result<Response, Fault> {
+        let velocity = contact.velocity;
+        let [x, y] = rotate_back(u, [velocity.along, velocity.across]);
+        let velocity = Vector::new(x, y, velocity.normal);
+        let answer = self.answer(&contact.compliance.turned(u), velocity)?;
+        let [along, across] = rotate(u, [answer.impulse.x, answer.impulse.y]);
         Ok(Response {
             impulse: Components {
-                normal: impulse.z,
-                along: x * impulse.x + y * impulse.y,
-                across: x * impulse.y - y * impulse.x,
+                normal: answer.impulse.z,
+                along,
+                across,
             },
-            separation_speed,
+            separation_speed: answer.separation_speed,
         })
     }
 }
