@@ -1,25 +1,6 @@
 //! Bounds on what a body that moves freely can do, for certified steps.
 
-use crate::math::Part;
 use std::ops::Mul;
-
-/// The largest |ω|² of a flight, from the principal moments and ω.
-///
-/// With J₁ ≤ J₂ ≤ J₃, J₁J₃|ω|² − 2E(J₁ + J₃) + Λ² = Σω_i²(J_i − J₁)(J_i − J₃) = −ω₂²(J₂ − J₁)(J₃ − J₂) ≤ 0. The energy and Λ² are constant, so
-/// that |ω| is largest where ω₂ = 0: Ω² = |ω|² + ω₂²(J₂ − J₁)(J₃ − J₂)/(J₁J₃) with what it is now.
-#[inline(always)]
-pub(super) fn largest_spin<T: Part + Mul<f64, Output = T>>(moments: [f64; 3], spin: [T; 3]) -> T {
-    let [x, y, z] = [spin[0] * spin[0], spin[1] * spin[1], spin[2] * spin[2]];
-    let [a, b, c] = moments;
-    let (squares, [least, middle, most]) = if (a - b) * (b - c) >= 0.0 {
-        (y, [a, b, c])
-    } else if (b - a) * (a - c) >= 0.0 {
-        (x, [b, a, c])
-    } else {
-        (z, [a, c, b])
-    };
-    x + y + z + squares * ((middle - least) * (most - middle) / (least * most))
-}
 
 /// [`SpinBounds::whole`], from a and the largest |ω|².
 #[inline(always)]

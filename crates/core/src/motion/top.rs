@@ -1,10 +1,11 @@
 //! Euler's equations of a free body.
 
-use super::bounds::{SpinBounds, largest_acceleration, largest_spin};
+use super::bounds::{SpinBounds, largest_acceleration};
 use crate::math::{Part, Quaternion, Vector, Vectors};
 use crate::shape::Top;
 use crate::simd::Pack;
 use pulp::Simd;
+use std::ops::Mul;
 
 impl Top {
     /// The angular momentum in the axes of space, from ω in those of the body.
@@ -48,16 +49,27 @@ impl Top {
     }
 
     /// The largest |ω|² of a flight.
+    ///
+    /// With J₁ ≤ J₂ ≤ J₃, J₁J₃|ω|² − 2E(J₁ + J₃) + Λ² = Σω_i²(J_i − J₁)(J_i − J₃) = −ω₂²(J₂ − J₁)(J₃ − J₂) ≤ 0. The energy and Λ² are constant, so
+    /// that |ω| is largest where ω₂ = 0: Ω² = |ω|² + ω₂²(J₂ − J₁)(J₃ − J₂)/(J₁J₃) with what it is now.
     #[inline(always)]
-    pub fn largest_spin(&self, spin: Vector) -> f64 {
-        largest_spin(self.moments(), spin.parts())
+    pub fn largest_spin<T: Part + Mul<f64, Output = T>>(&self, spin: Vector<T>) -> T {
+        let [x, y, z] = [spin.x * spin.x, spin.y * spin.y, spin.z * spin.z];
+        let [a, b, c] = self.moments();
+        let (squares, [least, middle, most]) = if (a - b) * (b - c) >= 0.0 {
+            (y, [a, b, c])
+        } else if (b - a) * (a - c) >= 0.0 {
+            (x, [b, a, c])
+        } else {
+            (z, [a, c, b])
+        };
+        x + y + z + squares * ((middle - least) * (most - middle) / (least * most))
     }
 
     /// [`SpinBounds::whole`] in each lane.
     #[inline(always)]
     pub(crate) fn largest_acceleration<S: Simd>(&self, spin: Vectors<S, 1>) -> Pack<S, 1> {
-        let square = largest_spin(self.moments(), spin.parts());
-        largest_acceleration(self.asymmetry, square)
+        largest_acceleration(self.asymmetry, self.largest_spin(spin))
     }
 
     /// Bounds on the rotation in a flight.
