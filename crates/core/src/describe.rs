@@ -154,6 +154,11 @@ impl Parameter {
         Self::number(name, text, "m", Interval::POSITIVE, example)
     }
 
+    /// A length that may be 0, in m.
+    pub(crate) const fn distance(name: &'static str, text: &'static str, example: f64) -> Self {
+        Self::number(name, text, "m", Interval::NOT_NEGATIVE, example)
+    }
+
     /// A density that is that of glass unless one is given.
     pub(crate) const fn density(text: &'static str) -> Self {
         let glass = Argument::Number(2500.0);

@@ -95,10 +95,12 @@ fn unequal() -> impl Strategy<Value = Case> {
     let distance = prop_oneof![1 => Just(0.0), 1 => magnitude(-6.0, -1.0), 4 => 0.0..3.0_f64];
     (alike, magnitude(-2.0, 2.0), distance).prop_map(|(two, density, distance)| {
         let separation = distance * (1.0_f64 + two);
-        let shape = Dumbbell::unequal([1.0, two], separation, [1.0, density]).unwrap();
-        let body = shape.scaled();
+        let solid = Dumbbell::unequal([1.0, two], separation, [1.0, density])
+            .unwrap()
+            .solid();
+        let body = solid.scaled;
         // Of the two centres one is known from the hull, whatever it is; the other one is L away.
-        let [one, two, l] = [1.0, two, separation].map(|x| x / shape.unit());
+        let [one, two, l] = [1.0, two, separation].map(|x| x / solid.unit);
         let engulfed = two > one && two - one >= l;
         let s = body.hull.lever(Sphere::One, 0.0) + if engulfed { l } else { 0.0 };
         let outside = Outside::Balls(vec![(s, one), (s - l, two)]);
@@ -113,7 +115,7 @@ fn loaded() -> impl Strategy<Value = Case> {
         // The sphere weighs 1.
         let centre = -load * offset / (1.0 + load);
         Case {
-            body: body.scaled(),
+            body: body.solid().scaled,
             outside: Outside::Balls(vec![(centre, 1.0)]),
         }
     })
@@ -121,7 +123,7 @@ fn loaded() -> impl Strategy<Value = Case> {
 
 fn spherocylinder() -> impl Strategy<Value = Case> {
     elongation().prop_map(|l| Case {
-        body: Spherocylinder::new(1.0, l, 1.0).unwrap().scaled(),
+        body: Spherocylinder::new(1.0, l, 1.0).unwrap().solid().scaled,
         outside: Outside::Balls(vec![(0.5 * l, 1.0), (-0.5 * l, 1.0)]),
     })
 }
@@ -132,7 +134,7 @@ fn spheroid() -> impl Strategy<Value = Case> {
         1 => Just(1.0), 1 => 0.999_999..1.000_001_f64, 4 => magnitude(-1.0, 1.0), 2 => magnitude(-3.0, 3.0)
     ];
     aspect.prop_map(|c| Case {
-        body: Spheroid::new(1.0, c, 1.0).unwrap().scaled(),
+        body: Spheroid::new(1.0, c, 1.0).unwrap().solid().scaled,
         outside: Outside::Spheroid(1.0_f64.min(1.0 / c), 1.0_f64.min(c)),
     })
 }
@@ -298,8 +300,8 @@ proptest! {
         two in magnitude(-0.7, 0.7), density in magnitude(-1.0, 1.0), distance in 0.01..2.0_f64, axis in direction(), space in 1.0..20.0_f64,
     ) {
         let separation = distance * (1.0 + two);
-        let one = Dumbbell::unequal([1.0, two], separation, [1.0, density]).unwrap().scaled();
-        let other = Dumbbell::unequal([two, 1.0], separation, [density, 1.0]).unwrap().scaled();
+        let one = Dumbbell::unequal([1.0, two], separation, [1.0, density]).unwrap().solid().scaled;
+        let other = Dumbbell::unequal([two, 1.0], separation, [density, 1.0]).unwrap().solid().scaled;
         let height = one.hull.support(axis.z) + space;
         prop_assert!((other.hull.support(-axis.z) - one.hull.support(axis.z)).abs() <= 1e-14 * height);
         let release = |body, axis| {
@@ -327,18 +329,20 @@ fn an_engulfed_sphere_is_not_there() {
         ([0.5, 1.0], 0.5, Sphere::Two),
         ([0.5, 1.0], 0.0, Sphere::Two),
     ] {
-        let body = Dumbbell::unequal(radius, separation, [3.0, 3.0]).unwrap();
-        let sphere = Dumbbell::new(1.0, 0.0, 3.0).unwrap();
-        assert!((body.mass() / sphere.mass() - 1.0).abs() < 1e-15);
-        assert!((body.transverse_inertia() / sphere.transverse_inertia() - 1.0).abs() < 1e-15);
-        let start = at_rest(&body.scaled(), 10.0 / body.unit(), 0.3);
+        let body = Dumbbell::unequal(radius, separation, [3.0, 3.0])
+            .unwrap()
+            .solid();
+        let sphere = Dumbbell::new(1.0, 0.0, 3.0).unwrap().solid();
+        assert!((body.mass / sphere.mass - 1.0).abs() < 1e-15);
+        assert!((body.transverse_inertia / sphere.transverse_inertia - 1.0).abs() < 1e-15);
+        let start = at_rest(&body.scaled, 10.0 / body.unit, 0.3);
         let FlightEnd::Impact { sphere, time, .. } =
-            landing(start, &body.scaled(), restitution_core::FlightStart::Free)
+            landing(start, &body.scaled, restitution_core::FlightStart::Free)
         else {
             panic!("it falls");
         };
         assert_eq!(sphere, name);
-        assert!((time - (2.0 * (10.0 - 1.0) / body.unit()).sqrt()).abs() < 1e-14 * time);
+        assert!((time - (2.0 * (10.0 - 1.0) / body.unit).sqrt()).abs() < 1e-14 * time);
     }
 }
 
@@ -374,7 +378,10 @@ fn a_spherocylinder_touches_like_a_dumbbell() {
     for elongation in [0.1, 1.0, 3.0] {
         let (a, b) = (
             dumbbell(elongation),
-            Spherocylinder::new(1.0, elongation, 1.0).unwrap().scaled(),
+            Spherocylinder::new(1.0, elongation, 1.0)
+                .unwrap()
+                .solid()
+                .scaled,
         );
         assert_eq!(a.hull, b.hull);
         assert!(elongation == 0.1 || a.transverse != b.transverse);

@@ -55,7 +55,8 @@ impl Case {
             law: self.law,
             particles,
             impacts: self.impacts,
-            release_height: (self.radius * (1.0 + body.scaled().half_separation + self.above))
+            release_height: (self.radius
+                * (1.0 + body.solid().scaled.half_separation + self.above))
                 .into(),
             gravity: self.gravity,
             orientation,

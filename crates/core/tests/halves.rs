@@ -7,9 +7,15 @@ use std::f64::consts::PI;
 /// In the middle, by symmetry: none of them says so itself.
 #[test]
 fn the_centre_of_mass_of_a_symmetric_body_is_in_the_middle() {
-    assert_eq!(Spheroid::new(2.0, 3.0, 1.0).unwrap().centre_of_mass(), 0.0);
     assert_eq!(
-        Spherocylinder::new(2.0, 3.0, 1.0).unwrap().centre_of_mass(),
+        Spheroid::new(2.0, 3.0, 1.0).unwrap().solid().centre_of_mass,
+        0.0
+    );
+    assert_eq!(
+        Spherocylinder::new(2.0, 3.0, 1.0)
+            .unwrap()
+            .solid()
+            .centre_of_mass,
         0.0
     );
 }

@@ -13,7 +13,7 @@ use restitution_core::{
 /// Of mass 1 and R = 1.
 fn dumbbell(separation: f64) -> Partner {
     use restitution_core::Shape;
-    let mass = Dumbbell::new(1.0, separation, 1.0).unwrap().mass();
+    let mass = Dumbbell::new(1.0, separation, 1.0).unwrap().solid().mass;
     let body = Dumbbell::new(1.0, separation, 1.0 / mass).unwrap();
     Partner::new("body", AnyBody::from(body)).unwrap()
 }
@@ -21,7 +21,7 @@ fn dumbbell(separation: f64) -> Partner {
 /// A spheroid with these semi-axes across and along its axis, and mass 1.
 fn spheroid([across, along]: [f64; 2]) -> Partner {
     use restitution_core::Shape;
-    let mass = Spheroid::new(across, along, 1.0).unwrap().mass();
+    let mass = Spheroid::new(across, along, 1.0).unwrap().solid().mass;
     let body = Spheroid::new(across, along, 1.0 / mass).unwrap();
     Partner::new("body", AnyBody::from(body)).unwrap()
 }

@@ -201,10 +201,13 @@ fn a_height_clears_the_plane_from_the_lowest_on() {
 /// Spheres whose distance no digit of the motion knows, and whose square is no number, are one sphere.
 #[test]
 fn spheres_that_are_hardly_apart_are_one() {
-    let sphere = Dumbbell::new(1.0, 0.0, 1.0).unwrap().scaled();
+    let sphere = Dumbbell::new(1.0, 0.0, 1.0).unwrap().solid().scaled;
     for separation in [1e-80, 1e-160, 1e-300, 5e-324] {
-        let near = Dumbbell::new(1.0, separation, 1.0).unwrap().scaled();
-        let short = Spherocylinder::new(1.0, separation, 1.0).unwrap().scaled();
+        let near = Dumbbell::new(1.0, separation, 1.0).unwrap().solid().scaled;
+        let short = Spherocylinder::new(1.0, separation, 1.0)
+            .unwrap()
+            .solid()
+            .scaled;
         assert_eq!((near, short), (sphere, sphere));
     }
 }

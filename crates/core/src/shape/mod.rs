@@ -190,7 +190,7 @@ impl AnyBody<'_> {
     /// The parts with which it touches another body; `name` is for the error.
     pub(crate) fn pieces(&self, name: &'static str) -> Result<Vec<Piece>, Error> {
         let found = match self {
-            Self::Revolution(solid) => solid.pieces(),
+            Self::Revolution(solid) => Some(solid.pieces()),
             Self::Rigid(body) => body.pieces(),
         };
         found.ok_or_else(|| Error::Parameter {
@@ -213,4 +213,10 @@ fn check_density(value: f64) -> Result<(), Error> {
 fn check_length(name: &'static str, value: f64) -> Result<(), Error> {
     let positive = value.is_finite() && value > 0.0;
     Error::unless(positive, name, value, "finite and > 0 (m)")
+}
+
+/// Checks that a length, in m, is not negative.
+fn check_distance(name: &'static str, value: f64) -> Result<(), Error> {
+    let positive = value.is_finite() && value >= 0.0;
+    Error::unless(positive, name, value, "finite and >= 0 (m)")
 }

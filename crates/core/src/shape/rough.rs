@@ -54,11 +54,9 @@ pub(super) const ROUGH_SPHERE: BodyKind = BodyKind::Rigid(Kind {
             Argument::Whole(1000),
         ),
         Parameter::length("asperity_radius", "radius of the asperities", 3e-5).up_to(f64::INFINITY),
-        Parameter::number(
+        Parameter::distance(
             "heights",
             "heights of the tops of the asperities above the sphere",
-            "m",
-            Interval::NOT_NEGATIVE,
             3e-5,
         )
         .optional(),

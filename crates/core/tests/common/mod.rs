@@ -21,7 +21,7 @@ pub fn cases(cases: u32) -> Config {
 
 /// The dumbbell of the given L/R in the core's units.
 pub fn dumbbell(elongation: f64) -> Body {
-    Dumbbell::new(1.0, elongation, 1.0).unwrap().scaled()
+    Dumbbell::new(1.0, elongation, 1.0).unwrap().solid().scaled
 }
 
 pub fn law(normal: f64, tangential: f64) -> Law<'static> {

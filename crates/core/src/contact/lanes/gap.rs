@@ -9,30 +9,26 @@ use pulp::Simd;
 
 /// The contact from which the flight starts.
 #[derive(Clone, Copy)]
-pub(crate) struct LastContact<S: Simd, const K: usize> {
+pub(crate) struct LastContact<S: Simd> {
     /// +1 or −1: sphere 1 or 2 is on the plane; 0: no part of the body is.
-    pub sphere: Pack<S, K>,
+    pub sphere: Pack<S, 1>,
     /// The normal speed at which the point of contact leaves the plane.
-    pub speed: Pack<S, K>,
+    pub speed: Pack<S, 1>,
 }
 
 /// Height, axis and their time derivatives at one time of the flight.
 #[derive(Clone, Copy)]
-pub(super) struct Instant<S: Simd, const K: usize> {
-    time: Pack<S, K>,
-    height: Pack<S, K>,
-    vz: Pack<S, K>,
-    axis_motion: AxisMotion<S, K>,
+pub(super) struct Instant<S: Simd> {
+    time: Pack<S, 1>,
+    height: Pack<S, 1>,
+    vz: Pack<S, 1>,
+    axis_motion: AxisMotion<S, 1>,
 }
 
-impl<S: Simd, const K: usize> Instant<S, K> {
+impl<S: Simd> Instant<S> {
     /// The gap f under a part of the hull (2), negative where they overlap, and f′.
     #[inline(always)]
-    pub(super) fn opening(
-        &self,
-        part: &HullPart<S, K>,
-        hull: &impl Hull,
-    ) -> (Pack<S, K>, Pack<S, K>) {
+    pub(super) fn opening(&self, part: &HullPart<S>, hull: &impl Hull) -> (Pack<S, 1>, Pack<S, 1>) {
         let AxisMotion { cos_tilt, rate, .. } = self.axis_motion;
         (
             hull.gap(part, cos_tilt, self.height), // (2)
@@ -43,31 +39,31 @@ impl<S: Simd, const K: usize> Instant<S, K> {
 
 /// The gap under a part of the hull.
 #[derive(Clone, Copy)]
-pub(crate) struct Gap<S: Simd, const K: usize> {
-    pub part: HullPart<S, K>,
+pub(crate) struct Gap<S: Simd> {
+    pub part: HullPart<S>,
     /// f ≥ 0; an overlap, which is rounding, counts as 0.
-    pub width: Pack<S, K>,
+    pub width: Pack<S, 1>,
     /// f′.
-    pub rate: Pack<S, K>,
+    pub rate: Pack<S, 1>,
     /// [`closing_speed`].
-    pub closing: Pack<S, K>,
+    pub closing: Pack<S, 1>,
 }
 
 /// The evaluation of a pass of the search: the gap that may close first.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct GapEvaluation<S: Simd, const K: usize> {
-    pub attitude: Attitude<S, K>,
+pub(crate) struct GapEvaluation<S: Simd> {
+    pub attitude: Attitude<S, 1>,
     /// The gap that may close first.
-    pub gap: Gap<S, K>,
+    pub gap: Gap<S>,
     /// The lanes that do not land before the angle turned through exceeds [`RANGE`].
-    pub never: Mask<S, K>,
+    pub never: Mask<S, 1>,
 }
 
-impl<S: Simd, const K: usize> GapEvaluation<S, K> {
+impl<S: Simd> GapEvaluation<S> {
     /// Before the first evaluation.
     #[inline(always)]
-    pub fn none(part: HullPart<S, K>) -> Self {
+    pub fn none(part: HullPart<S>) -> Self {
         let simd = part.own.simd();
         let zero = Pack::splat(simd, 0.0);
         Self {
@@ -86,23 +82,23 @@ impl<S: Simd, const K: usize> GapEvaluation<S, K> {
 /// A flight and the bounds on its gap that the search uses.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Search<S: Simd, F, const K: usize> {
+pub(crate) struct Search<S: Simd, F> {
     pub flight: F,
     /// The contact from which the flight starts.
-    pub last_contact: LastContact<S, K>,
+    pub last_contact: LastContact<S>,
     /// S, the bound on the contribution of rotation to f″: (L/2)AΩ² for a dumbbell.
-    pub rotation_bound: Pack<S, K>,
+    pub rotation_bound: Pack<S, 1>,
     /// M, the bound on −f″.
-    pub curvature_bound: Pack<S, K>,
+    pub curvature_bound: Pack<S, 1>,
     /// From `up` to `down` the centre of mass is higher than the hull can reach.
-    up: Pack<S, K>,
-    down: Pack<S, K>,
+    up: Pack<S, 1>,
+    down: Pack<S, 1>,
 }
 
-impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
+impl<S: Simd, F: Flight<S, 1>> Search<S, F> {
     /// The search along a flight that starts from this contact.
     #[inline(always)]
-    pub fn new(flight: F, last_contact: LastContact<S, K>, hull: &impl Hull) -> Self {
+    pub fn new(flight: F, last_contact: LastContact<S>, hull: &impl Hull) -> Self {
         let zero = Pack::splat(flight.rate().simd(), 0.0);
         let mut search = Self {
             flight,
@@ -120,7 +116,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     #[inline(always)]
     pub fn continue_with(
         &mut self,
-        motion: <F::State as SymmetricState<S, K>>::Motion,
+        motion: <F::State as SymmetricState<S, 1>>::Motion,
         slope: f64,
         hull: &impl Hull,
     ) {
@@ -174,7 +170,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     /// The speed at which the other part approaches is taken relative to the part at rest: what rounding makes of the speed of that
     /// one is in both, and is all that there is where the two parts touch at the same place.
     #[inline(always)]
-    pub fn rests<H: Hull>(&self, hull: &H) -> Mask<S, K> {
+    pub fn rests<H: Hull>(&self, hull: &H) -> Mask<S, 1> {
         let instant = self.beginning();
         let on = self.last_contact.sphere;
         let part = hull.part(!on.lt(0.0));
@@ -190,7 +186,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
 
     /// The time of the first evaluation, certified for both parts, of which one may be leaving the plane.
     #[inline(always)]
-    pub fn first_evaluation<H: Hull>(&self, hull: &H) -> Pack<S, K> {
+    pub fn first_evaluation<H: Hull>(&self, hull: &H) -> Pack<S, 1> {
         let instant = self.beginning();
         let on = self.last_contact.sphere;
         let step = if on.eq(0.0).any() {
@@ -218,7 +214,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
 
     /// The angle that the body has turned through at `time`, Ωt.
     #[inline(always)]
-    pub fn angle(&self, time: Pack<S, K>) -> Pack<S, K> {
+    pub fn angle(&self, time: Pack<S, 1>) -> Pack<S, 1> {
         self.flight.rate() * time
     }
 
@@ -226,10 +222,10 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     #[inline(always)]
     pub fn evaluate<H: Hull>(
         &self,
-        time: Pack<S, K>,
-        turned: (Pack<S, K>, Pack<S, K>),
+        time: Pack<S, 1>,
+        turned: (Pack<S, 1>, Pack<S, 1>),
         hull: &H,
-    ) -> GapEvaluation<S, K> {
+    ) -> GapEvaluation<S> {
         let never = !self.angle(time).abs().le(RANGE);
         let attitude = self.flight.attitude(turned);
         let instant = self.instant(time, attitude);
@@ -253,7 +249,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     }
 
     #[inline(always)]
-    fn beginning(&self) -> Instant<S, K> {
+    fn beginning(&self) -> Instant<S> {
         let start = self.flight.start();
         Instant {
             time: Pack::splat(start.height().simd(), 0.0),
@@ -265,7 +261,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
 
     /// The gap of a part.
     #[inline(always)]
-    fn gap(&self, instant: &Instant<S, K>, part: HullPart<S, K>, hull: &impl Hull) -> Gap<S, K> {
+    fn gap(&self, instant: &Instant<S>, part: HullPart<S>, hull: &impl Hull) -> Gap<S> {
         let (width, rate) = instant.opening(&part, hull);
         let width = width.max(0.0);
         Gap {
@@ -278,7 +274,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
 
     /// Height, axis and their derivatives at `time`, with this attitude.
     #[inline(always)]
-    pub(super) fn instant(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Instant<S, K> {
+    pub(super) fn instant(&self, time: Pack<S, 1>, attitude: Attitude<S, 1>) -> Instant<S> {
         Instant {
             time,
             height: self.flight.height_at(time),
@@ -292,10 +288,10 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     #[inline(always)]
     fn nearest_in_rare_cases<H: Hull>(
         &self,
-        instant: &Instant<S, K>,
-        nearer: Gap<S, K>,
+        instant: &Instant<S>,
+        nearer: Gap<S>,
         hull: &H,
-    ) -> Gap<S, K> {
+    ) -> Gap<S> {
         let gap = self.exact(instant, nearer, hull);
         if !H::TWO {
             return gap;
@@ -316,7 +312,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     }
 
     #[inline(always)]
-    fn exact<H: Hull>(&self, instant: &Instant<S, K>, gap: Gap<S, K>, _: &H) -> Gap<S, K> {
+    fn exact<H: Hull>(&self, instant: &Instant<S>, gap: Gap<S>, _: &H) -> Gap<S> {
         let on = self.last_contact.sphere;
         let there = if H::TWO {
             gap.part.one.select(1.0, -1.0_f64).eq(on)
@@ -336,13 +332,13 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
 
     /// The time before which there is no contact of a part with this gap.
     #[inline(always)]
-    pub fn certified(&self, gap: &Gap<S, K>) -> Pack<S, K> {
+    pub fn certified(&self, gap: &Gap<S>) -> Pack<S, 1> {
         first_zero(gap.width, gap.rate, gap.closing, self.curvature_bound)
     }
 
     /// The given time, or, if the centre of mass is then higher than the hull can reach, the time at which it comes back down.
     #[inline(always)]
-    pub fn skip(&self, time: Pack<S, K>) -> Pack<S, K> {
+    pub fn skip(&self, time: Pack<S, 1>) -> Pack<S, 1> {
         self.up.le(time).select(time.max(self.down), time)
     }
 }

@@ -11,37 +11,37 @@ use pulp::Simd;
 /// The two next steps of the search.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Steps<S: Simd, const K: usize> {
+pub(crate) struct Steps<S: Simd> {
     /// The certified step.
-    certified: Pack<S, K>,
+    certified: Pack<S, 1>,
     /// The step to where the contact is looked for next: at first to the zero of an expansion.
-    expanded: Pack<S, K>,
+    expanded: Pack<S, 1>,
 }
 
 /// The gap that remains at the zero of an expansion.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Prediction<S: Simd, const K: usize> {
-    time: Pack<S, K>,
-    attitude: Attitude<S, K>,
-    width: Pack<S, K>,
+pub(crate) struct Prediction<S: Simd> {
+    time: Pack<S, 1>,
+    attitude: Attitude<S, 1>,
+    width: Pack<S, 1>,
     /// f′ and f″.
-    rate: Pack<S, K>,
-    curvature: Pack<S, K>,
+    rate: Pack<S, 1>,
+    curvature: Pack<S, 1>,
 }
 
 /// The result of a pass of the search.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct LocatedContact<S: Simd, const K: usize> {
+pub(crate) struct LocatedContact<S: Simd> {
     /// Time and attitude of the contact.
-    pub time: Pack<S, K>,
-    pub attitude: Attitude<S, K>,
+    pub time: Pack<S, 1>,
+    pub attitude: Attitude<S, 1>,
     /// The lanes in which the contact is located, or that never land.
-    pub done: Mask<S, K>,
+    pub done: Mask<S, 1>,
 }
 
-impl<S: Simd, const K: usize> Steps<S, K> {
+impl<S: Simd> Steps<S> {
     /// Before the first evaluation.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
@@ -55,7 +55,7 @@ impl<S: Simd, const K: usize> Steps<S, K> {
     /// The step to the contact that was found from `time`, to predict it again from there; that of the lanes that are done stays as it
     /// is, so that they repeat the same result.
     #[inline(always)]
-    pub fn on_to(self, located: &LocatedContact<S, K>, time: Pack<S, K>) -> Self {
+    pub fn on_to(self, located: &LocatedContact<S>, time: Pack<S, 1>) -> Self {
         Self {
             expanded: located.done.select(self.expanded, located.time - time),
             ..self
@@ -63,7 +63,7 @@ impl<S: Simd, const K: usize> Steps<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> Prediction<S, K> {
+impl<S: Simd> Prediction<S> {
     /// Before the first evaluation.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
@@ -78,7 +78,7 @@ impl<S: Simd, const K: usize> Prediction<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> LocatedContact<S, K> {
+impl<S: Simd> LocatedContact<S> {
     /// Before the first evaluation.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
@@ -90,10 +90,10 @@ impl<S: Simd, const K: usize> LocatedContact<S, K> {
     }
 }
 
-impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
+impl<S: Simd, F: Flight<S, 1>> Search<S, F> {
     /// The next steps, from the gap as evaluated.
     #[inline(always)]
-    pub fn steps(&self, evaluation: &GapEvaluation<S, K>, hull: &impl Hull) -> Steps<S, K> {
+    pub fn steps(&self, evaluation: &GapEvaluation<S>, hull: &impl Hull) -> Steps<S> {
         let step = self.certified(&evaluation.gap);
         Steps {
             certified: step,
@@ -105,11 +105,11 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     #[inline(always)]
     pub fn predict(
         &self,
-        time: Pack<S, K>,
-        evaluation: &GapEvaluation<S, K>,
-        steps: &Steps<S, K>,
+        time: Pack<S, 1>,
+        evaluation: &GapEvaluation<S>,
+        steps: &Steps<S>,
         hull: &impl Hull,
-    ) -> Prediction<S, K> {
+    ) -> Prediction<S> {
         let time = time + steps.expanded;
         let attitude = evaluation
             .attitude
@@ -129,11 +129,11 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     #[inline(always)]
     pub fn locate<H: Hull>(
         &self,
-        evaluation: &GapEvaluation<S, K>,
-        steps: &Steps<S, K>,
-        prediction: &Prediction<S, K>,
+        evaluation: &GapEvaluation<S>,
+        steps: &Steps<S>,
+        prediction: &Prediction<S>,
         hull: &H,
-    ) -> LocatedContact<S, K> {
+    ) -> LocatedContact<S> {
         let part = &evaluation.gap.part;
         // A step of third order closes the remaining gap.
         let inverse = -1.0 / prediction.rate;
@@ -170,11 +170,11 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     #[inline(always)]
     pub fn accept_grazing(
         &self,
-        time: Pack<S, K>,
-        evaluation: &GapEvaluation<S, K>,
-        steps: &Steps<S, K>,
-        clear: Mask<S, K>,
-        located: &mut LocatedContact<S, K>,
+        time: Pack<S, 1>,
+        evaluation: &GapEvaluation<S>,
+        steps: &Steps<S>,
+        clear: Mask<S, 1>,
+        located: &mut LocatedContact<S>,
     ) {
         let step = steps.certified;
         let end = time + step;
@@ -197,7 +197,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
 
     /// The time up to which a pass that evaluated the gap at `time` rules out a contact.
     #[inline(always)]
-    pub fn certain(&self, time: Pack<S, K>, steps: &Steps<S, K>) -> Pack<S, K> {
+    pub fn certain(&self, time: Pack<S, 1>, steps: &Steps<S>) -> Pack<S, 1> {
         // The time must increase by at least one rounding unit, however short the step.
         self.skip(time + steps.certified.max(f64::EPSILON * time))
     }
@@ -207,12 +207,12 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     #[inline(always)]
     pub fn aim(
         &self,
-        certain: Pack<S, K>,
-        steps: &Steps<S, K>,
-        prediction: &Prediction<S, K>,
-        located: &LocatedContact<S, K>,
+        certain: Pack<S, 1>,
+        steps: &Steps<S>,
+        prediction: &Prediction<S>,
+        located: &LocatedContact<S>,
         hull: &impl Hull,
-    ) -> Pack<S, K> {
+    ) -> Pack<S, 1> {
         let rate = prediction.rate;
         let beyond = mean_rate_before(located.time - certain, rate, self.curvature_bound);
         // So near to the contact a pass ends the search, and the gap is larger than its rounding error.
@@ -227,11 +227,11 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     #[inline(always)]
     pub fn is_clear<H: Hull>(
         &self,
-        certain: Pack<S, K>,
-        time: Pack<S, K>,
-        evaluation: &GapEvaluation<S, K>,
+        certain: Pack<S, 1>,
+        time: Pack<S, 1>,
+        evaluation: &GapEvaluation<S>,
         hull: &H,
-    ) -> Mask<S, K> {
+    ) -> Mask<S, 1> {
         let (since, bound) = (time - certain, self.curvature_bound);
         let (width, rate) = (evaluation.gap.width, evaluation.gap.rate);
         let mut least = before(since, width, rate, bound).min(width);
@@ -249,10 +249,10 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     #[inline(always)]
     fn expanded(
         &self,
-        evaluation: &GapEvaluation<S, K>,
-        step: Pack<S, K>,
+        evaluation: &GapEvaluation<S>,
+        step: Pack<S, 1>,
         hull: &impl Hull,
-    ) -> Pack<S, K> {
+    ) -> Pack<S, 1> {
         let axis_motion = self.flight.axis_motion(evaluation.attitude);
         let [second, third, fourth] = hull.derivatives(&evaluation.gap.part, &axis_motion); // f″ without gravity, f‴, f⁗
         let slack = second + self.rotation_bound; // f″ + M, which the lower bound neglects

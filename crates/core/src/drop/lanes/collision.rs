@@ -65,7 +65,7 @@ impl<S: Simd> ContactPoint<S> {
 
     /// That of a part of a hull at this e_z.
     #[inline(always)]
-    pub fn of(hull: &impl Hull, part: &HullPart<S, 1>, cos_tilt: Pack<S, 1>) -> Self {
+    pub fn of(hull: &impl Hull, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Self {
         Self {
             lever: hull.lever(part, cos_tilt),
             radius: hull.radius(part, cos_tilt),

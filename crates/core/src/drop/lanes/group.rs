@@ -31,15 +31,15 @@ type MotionOf<S, T> = <StateOf<S, T> as SymmetricState<S, 1>>::Motion;
 #[repr(align(64))]
 pub(crate) struct Group<S: Simd, T: Dimension> {
     /// The search along the flight. The start of the flight is later replaced by the state before the impact.
-    search: Search<S, FlightOf<S, T>, 1>,
+    search: Search<S, FlightOf<S, T>>,
     /// The time of the evaluation, with sine and cosine of the angle turned through by then.
     pub time: Pack<S, 1>,
     pub turned: (Pack<S, 1>, Pack<S, 1>),
     /// The gap there, and the results of the stages that follow.
-    evaluation: GapEvaluation<S, 1>,
-    steps: Steps<S, 1>,
-    prediction: Prediction<S, 1>,
-    located: LocatedContact<S, 1>,
+    evaluation: GapEvaluation<S>,
+    steps: Steps<S>,
+    prediction: Prediction<S>,
+    located: LocatedContact<S>,
     /// The time up to which a contact is ruled out, and the lanes in which it is ruled out up to the evaluation as well.
     certain: Pack<S, 1>,
     clear: Mask<S, 1>,

@@ -1,11 +1,11 @@
 //! Two spheres on an axis. Equal ones are the paper's homogeneous dumbbell (A1)–(A8).
 
 use super::{
-    Arc, Ball, Body, EqualBalls, INERTIA, OneBall, Shape, Solid, Surface, TwoBalls, WALL,
-    check_density, check_distance, check_length, hollow, made, representable, seen,
+    Arc, Ball, Body, INERTIA, OneBall, Shape, Solid, Surface, TwoBalls, WALL, check_density,
+    check_distance, check_length, hollow, made, representable, seen,
 };
 use crate::Error;
-use crate::describe::{Arguments, Interval, Kind, Parameter};
+use crate::describe::{Arguments, Kind, Parameter};
 use crate::shape::mass::MassProperties;
 use std::f64::consts::PI;
 
@@ -30,13 +30,7 @@ impl Dumbbell {
         text: "two spheres on an axis",
         parameters: &[
             Parameter::length("radius", "radius of either sphere, or of each", 3e-3).of_each(),
-            Parameter::number(
-                "separation",
-                "distance between the centres",
-                "m",
-                Interval::NOT_NEGATIVE,
-                3e-4,
-            ),
+            Parameter::distance("separation", "distance between the centres", 3e-4),
             Parameter::density("density of both spheres, or of each").of_each(),
             WALL,
             INERTIA,
@@ -74,9 +68,9 @@ impl Dumbbell {
         representable(body, "radius")
     }
 
-    /// True if the spheres are equal.
-    fn is_equal(&self) -> bool {
-        self.radius[0] == self.radius[1] && self.density[0] == self.density[1]
+    /// The core's unit of length: the radius of the larger sphere, relative to which rounding errors of positions are small.
+    fn unit(&self) -> f64 {
+        self.radius[0].max(self.radius[1])
     }
 
     /// Both radii in units of R.
@@ -124,24 +118,23 @@ impl Dumbbell {
         self.separation / self.unit()
     }
 
-    /// m/(πρR³).
-    fn mass_factor(&self) -> f64 {
-        self.of_wall(mass_factor, 3)
-    }
-
-    /// J_xx/(πρR⁵).
-    fn transverse_factor(&self) -> f64 {
-        self.of_wall(transverse_factor, 5)
-    }
-
-    /// J_zz/(πρR⁵).
-    fn axial_factor(&self) -> f64 {
-        self.of_wall(axial_factor, 5)
-    }
-
-    fn of_wall(&self, factor: fn(f64) -> f64, power: i32) -> f64 {
-        let wall = self.wall.map(|wall| wall / self.unit());
-        hollow::of_wall(factor, power, self.elongation(), wall)
+    /// The outline about a centre of mass at this place.
+    fn outline(&self, centre: f64) -> [Arc; 2] {
+        let [one, two] = self.radius;
+        let half = 0.5 * self.separation;
+        let centres = [half, -half].map(|place| place - centre);
+        if (one - two).abs() >= self.separation {
+            let larger = usize::from(two > one);
+            return Arc::halves(centres[larger], self.radius[larger], self.radius[larger]);
+        }
+        // The cosines of the angles at which the spheres meet, from the direction towards the other sphere.
+        let lean = (one - two) / self.separation * (one + two);
+        let meets = [(one, lean), (two, -lean)].map(|(radius, lean)| {
+            (0.5 * (self.separation + lean) / radius)
+                .clamp(-1.0, 1.0)
+                .acos()
+        });
+        Arc::caps(centres, self.radius, [PI - meets[0], meets[1]])
     }
 }
 
@@ -174,62 +167,45 @@ fn axial_factor(l: f64) -> f64 {
 }
 
 impl Shape for Dumbbell {
-    /// The radius of the larger sphere, relative to which rounding errors of positions are small.
-    fn unit(&self) -> f64 {
-        self.radius[0].max(self.radius[1])
-    }
-
-    fn mass(&self) -> f64 {
-        let unit = self.density[0] * self.unit().powi(3);
-        if self.is_equal() {
-            unit * PI * self.mass_factor() // (A3)
+    fn solid(&self) -> Solid {
+        let density = self.density[0];
+        if self.radius[0] == self.radius[1] && density == self.density[1] {
+            let given = [self.radius[0], self.separation, density];
+            let factors = [mass_factor, transverse_factor, axial_factor];
+            return hollow::of_equal_caps(given, self.wall, factors, self.outline(0.0));
+        }
+        let (unit, elongation) = (self.unit(), seen(self.elongation()));
+        let part = self.whole();
+        let ball = |place: f64, radius| Ball {
+            offset: place - part.centre,
+            radius,
+        };
+        let [one, two] = self.radii();
+        let balls = [ball(0.0, one), ball(-elongation, two)];
+        let (hull, half_separation) = if one - two >= elongation {
+            (Surface::OneBall(OneBall::new(balls[0], true)), 0.0)
+        } else if two - one >= elongation {
+            (Surface::OneBall(OneBall::new(balls[1], false)), 0.0)
         } else {
-            unit * self.whole().mass
+            let pair = TwoBalls::new(balls, elongation);
+            (Surface::TwoBalls(pair), 0.5 * elongation)
+        };
+        let centre_of_mass = unit * (part.centre + 0.5 * self.elongation());
+        Solid {
+            unit,
+            mass: density * unit.powi(3) * part.mass,
+            transverse_inertia: density * unit.powi(5) * part.transverse,
+            axial_inertia: density * unit.powi(5) * part.axial,
+            centre_of_mass,
+            is_filled: false,
+            outline: self.outline(centre_of_mass),
+            scaled: Body {
+                hull,
+                half_separation,
+                transverse: part.transverse / part.mass,
+                axial: part.axial / part.mass,
+            },
         }
-    }
-
-    fn transverse_inertia(&self) -> f64 {
-        let unit = self.density[0] * self.unit().powi(5);
-        if self.is_equal() {
-            unit * PI * self.transverse_factor() // (A8)
-        } else {
-            unit * self.whole().transverse
-        }
-    }
-
-    fn axial_inertia(&self) -> f64 {
-        let unit = self.density[0] * self.unit().powi(5);
-        if self.is_equal() {
-            unit * PI * self.axial_factor() // (A5)
-        } else {
-            unit * self.whole().axial
-        }
-    }
-
-    fn centre_of_mass(&self) -> f64 {
-        if self.is_equal() {
-            0.0
-        } else {
-            self.unit() * (self.whole().centre + 0.5 * self.elongation())
-        }
-    }
-
-    fn outline(&self) -> [Arc; 2] {
-        let [one, two] = self.radius;
-        let half = 0.5 * self.separation;
-        let centres = [half, -half].map(|place| place - self.centre_of_mass());
-        if (one - two).abs() >= self.separation {
-            let larger = usize::from(two > one);
-            return Arc::halves(centres[larger], self.radius[larger], self.radius[larger]);
-        }
-        // The cosines of the angles at which the spheres meet, from the direction towards the other sphere.
-        let lean = (one - two) / self.separation * (one + two);
-        let meets = [(one, lean), (two, -lean)].map(|(radius, lean)| {
-            (0.5 * (self.separation + lean) / radius)
-                .clamp(-1.0, 1.0)
-                .acos()
-        });
-        Arc::caps(centres, self.radius, [PI - meets[0], meets[1]])
     }
 
     fn hollow(self, wall: f64) -> Result<Self, Error> {
@@ -247,59 +223,18 @@ impl Shape for Dumbbell {
         )?;
         representable(Self { wall, ..self }, "radius")
     }
-
-    fn scaled(&self) -> Body {
-        let elongation = seen(self.elongation());
-        if self.is_equal() {
-            let half_separation = 0.5 * elongation;
-            let mass = self.mass_factor();
-            return Body {
-                hull: Surface::EqualBalls(EqualBalls::new(half_separation)),
-                half_separation,
-                transverse: self.transverse_factor() / mass,
-                axial: self.axial_factor() / mass,
-            };
-        }
-        let part = self.whole();
-        let ball = |place: f64, radius| Ball {
-            offset: place - part.centre,
-            radius,
-        };
-        let [one, two] = self.radii();
-        let balls = [ball(0.0, one), ball(-elongation, two)];
-        let (hull, half_separation) = if one - two >= elongation {
-            (Surface::OneBall(OneBall::new(balls[0], true)), 0.0)
-        } else if two - one >= elongation {
-            (Surface::OneBall(OneBall::new(balls[1], false)), 0.0)
-        } else {
-            let pair = TwoBalls::new(balls, elongation);
-            (Surface::TwoBalls(pair), 0.5 * elongation)
-        };
-        Body {
-            hull,
-            half_separation,
-            transverse: part.transverse / part.mass,
-            axial: part.axial / part.mass,
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::GAUSS;
 
-    /// The integrals over slices of the upper half, (A3), (A5), (A6), by Gauss–Legendre quadrature, exact for these polynomials.
+    /// The integrals over slices of the upper half, (A3), (A5), (A6), by Gauss's quadrature, exact for these polynomials.
     fn by_quadrature(l: f64) -> [f64; 3] {
-        // Five nodes integrate degree 9 exactly; the integrands have degree 4.
-        let nodes = [
-            (0.0, 128.0 / 225.0),
-            (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
-            (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
-            (0.906_179_845_938_664, 0.236_926_885_056_189_08),
-            (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
-        ];
+        let nodes = GAUSS.iter().flat_map(|&[x, w]| [(x, w), (-x, w)]);
         let half = 0.5 * (1.0 + l / 2.0);
-        nodes.iter().fold([0.0; 3], |sum, &(x, w)| {
+        nodes.fold([0.0; 3], |sum, (x, w)| {
             let z = half * (1.0 + x);
             let r2 = 1.0 - (z - l / 2.0).powi(2); // (A2)
             let w = w * half;
@@ -314,23 +249,22 @@ mod tests {
     #[test]
     fn inertia_is_the_integral_over_the_slices() {
         for l in [0.0, 0.01, 0.1, 0.5, 1.0, 1.7, 1.999_999] {
-            let body = Dumbbell::new(1.0, l, 1.0).unwrap();
             let [m, jxx, jzz] = by_quadrature(l);
-            assert!((body.mass_factor() - m).abs() < 1e-14 * m);
-            assert!((body.transverse_factor() - jxx).abs() < 1e-14 * jxx);
-            assert!((body.axial_factor() - jzz).abs() < 1e-14 * jzz);
+            assert!((mass_factor(l) - m).abs() < 1e-14 * m);
+            assert!((transverse_factor(l) - jxx).abs() < 1e-14 * jxx);
+            assert!((axial_factor(l) - jzz).abs() < 1e-14 * jzz);
         }
     }
 
     #[test]
     fn the_sphere_and_the_touching_spheres_are_limits() {
-        let sphere = Dumbbell::new(2.0, 0.0, 3.0).unwrap();
+        let sphere = Dumbbell::new(2.0, 0.0, 3.0).unwrap().solid();
         let m = 3.0 * 4.0 / 3.0 * PI * 8.0;
-        assert!((sphere.mass() - m).abs() < 1e-13 * m);
-        assert!((sphere.transverse_inertia() - 0.4 * m * 4.0).abs() < 1e-12 * m);
-        assert!((sphere.axial_inertia() - 0.4 * m * 4.0).abs() < 1e-12 * m);
-        let below = Dumbbell::new(1.0, 2.0 - 1e-12, 1.0).unwrap().scaled();
-        let above = Dumbbell::new(1.0, 2.0, 1.0).unwrap().scaled();
+        assert!((sphere.mass - m).abs() < 1e-13 * m);
+        assert!((sphere.transverse_inertia - 0.4 * m * 4.0).abs() < 1e-12 * m);
+        assert!((sphere.axial_inertia - 0.4 * m * 4.0).abs() < 1e-12 * m);
+        let below = Dumbbell::new(1.0, 2.0 - 1e-12, 1.0).unwrap().solid().scaled;
+        let above = Dumbbell::new(1.0, 2.0, 1.0).unwrap().solid().scaled;
         assert!((below.transverse - above.transverse).abs() < 1e-11);
         assert!((below.axial - above.axial).abs() < 1e-11);
     }

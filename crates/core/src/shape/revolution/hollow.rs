@@ -1,8 +1,9 @@
 //! Bodies that are not full: hollow ones, and those of given moments of inertia.
 
-use super::{Body, Shape, Solid, check_length};
+use super::{Arc, Body, EqualBalls, Shape, Solid, Surface, check_length, seen};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Parameter};
+use std::f64::consts::PI;
 
 /// The parameters with which that of every shape end.
 pub(super) const WALL: Parameter = Parameter::length(
@@ -45,7 +46,7 @@ pub(super) fn made<S: Shape>(
     if has_its_own {
         Ok(body)
     } else {
-        with_inertia(body, inertia)
+        body.with_inertia(inertia)
     }
 }
 
@@ -65,52 +66,77 @@ pub(super) fn checked(
     Ok((wall < thickest).then_some(wall))
 }
 
-/// The value of a function of L/R for a shape of two equal caps in units of R, less that for the shape drawn in by the wall,
-/// `power` being that of the length.
-pub(super) fn of_wall(
-    factor: fn(f64) -> f64,
-    power: i32,
-    elongation: f64,
+/// A body with two equal caps of radius R on the axis, their centres L apart, less itself drawn in by the wall. `factors` are m/(πρR³), J_xx/(πρR⁵)
+/// and J_zz/(πρR⁵) of the whole shape, as functions of L/R.
+pub(super) fn of_equal_caps(
+    [radius, separation, density]: [f64; 3],
     wall: Option<f64>,
-) -> f64 {
-    let whole = factor(elongation);
-    wall.map_or(whole, |wall| {
-        let inside = 1.0 - wall;
-        whole - inside.powi(power) * factor(elongation / inside)
-    })
+    factors: [fn(f64) -> f64; 3],
+    outline: [Arc; 2],
+) -> Solid {
+    let elongation = separation / radius;
+    let inside = wall.map(|wall| 1.0 - wall / radius);
+    let [mass, transverse, axial] = [0, 1, 2].map(|i| {
+        let (factor, power) = (factors[i], [3, 5, 5][i]);
+        let whole = factor(elongation);
+        inside.map_or(whole, |inside| {
+            whole - inside.powi(power) * factor(elongation / inside)
+        })
+    });
+    let half_separation = 0.5 * seen(elongation);
+    Solid {
+        unit: radius,
+        mass: density * radius.powi(3) * PI * mass,
+        transverse_inertia: density * radius.powi(5) * PI * transverse,
+        axial_inertia: density * radius.powi(5) * PI * axial,
+        centre_of_mass: 0.0,
+        is_filled: false,
+        outline,
+        scaled: Body {
+            hull: Surface::EqualBalls(EqualBalls::new(half_separation)),
+            half_separation,
+            transverse: transverse / mass,
+            axial: axial / mass,
+        },
+    }
 }
 
-/// See [`Solid::with_inertia`].
-pub(super) fn with_inertia(body: Solid, moments: [f64; 2]) -> Result<Solid, Error> {
-    for moment in moments {
-        let positive = moment.is_finite() && moment > 0.0;
-        Error::unless(positive, "inertia", moment, "finite and > 0 (kg m^2)")?;
+impl Solid {
+    /// The body with these moments of inertia across and about its axis, in kg m², instead of those of its matter.
+    ///
+    /// # Errors
+    /// Unless matter within the hull can have them: both positive, the second at most twice the first.
+    pub fn with_inertia(self, moments: [f64; 2]) -> Result<Self, Error> {
+        for moment in moments {
+            let positive = moment.is_finite() && moment > 0.0;
+            Error::unless(positive, "inertia", moment, "finite and > 0 (kg m^2)")?;
+        }
+        let [transverse, axial] = moments;
+        let rounding = 1.0 + 4.0 * f64::EPSILON;
+        Error::unless(
+            axial <= 2.0 * transverse * rounding,
+            "inertia",
+            axial,
+            "about the axis at most twice that across it (kg m^2)",
+        )?;
+        // The sum of all three is twice ∫r² dm about the centre of mass.
+        let most = 2.0 * self.mass * self.farthest().powi(2);
+        Error::unless(
+            2.0 * transverse + axial <= most * rounding,
+            "inertia",
+            transverse,
+            "so small that the matter, of this mass, is within the surface (kg m^2)",
+        )?;
+        let unit = self.mass * (self.unit * self.unit);
+        Ok(Self {
+            transverse_inertia: transverse,
+            axial_inertia: axial,
+            scaled: Body {
+                transverse: transverse / unit,
+                axial: axial / unit,
+                ..self.scaled
+            },
+            ..self
+        })
     }
-    let [transverse, axial] = moments;
-    let rounding = 1.0 + 4.0 * f64::EPSILON;
-    Error::unless(
-        axial <= 2.0 * transverse * rounding,
-        "inertia",
-        axial,
-        "about the axis at most twice that across it (kg m^2)",
-    )?;
-    // The sum of all three is twice ∫r² dm about the centre of mass.
-    let most = 2.0 * body.mass * body.farthest().powi(2);
-    Error::unless(
-        2.0 * transverse + axial <= most * rounding,
-        "inertia",
-        transverse,
-        "so small that the matter, of this mass, is within the surface (kg m^2)",
-    )?;
-    let unit = body.mass * (body.unit * body.unit);
-    Ok(Solid {
-        transverse_inertia: transverse,
-        axial_inertia: axial,
-        scaled: Body {
-            transverse: transverse / unit,
-            axial: axial / unit,
-            ..body.scaled
-        },
-        ..body
-    })
 }

@@ -33,11 +33,9 @@ impl LoadedSphere {
                 Interval::NOT_NEGATIVE,
                 1e-4,
             ),
-            Parameter::number(
+            Parameter::distance(
                 "offset",
                 "distance of the point from the centre, at most the radius",
-                "m",
-                Interval::NOT_NEGATIVE,
                 2e-3,
             ),
             WALL,
@@ -70,59 +68,40 @@ impl LoadedSphere {
         };
         representable(body, "radius")
     }
-
-    /// Mass, centre and inertia of sphere and load.
-    fn whole(&self) -> MassProperties {
-        let sphere = |radius| MassProperties::sphere(radius, self.density);
-        let whole = sphere(self.radius);
-        self.wall
-            .map_or(whole, |wall| whole.less(sphere(self.radius - wall)))
-            .and(MassProperties::point(self.load, self.offset))
-    }
 }
 
 impl Shape for LoadedSphere {
-    fn unit(&self) -> f64 {
-        self.radius
-    }
-
-    fn mass(&self) -> f64 {
-        self.whole().mass
-    }
-
-    fn transverse_inertia(&self) -> f64 {
-        self.whole().transverse
-    }
-
-    fn axial_inertia(&self) -> f64 {
-        self.whole().axial
-    }
-
-    fn centre_of_mass(&self) -> f64 {
-        self.whole().centre
-    }
-
-    fn outline(&self) -> [Arc; 2] {
-        Arc::halves(-self.centre_of_mass(), self.radius, self.radius)
-    }
-
-    fn hollow(self, wall: f64) -> Result<Self, Error> {
-        let wall = hollow::checked(wall, self.radius, (self.radius, "at most the radius (m)"))?;
-        representable(Self { wall, ..self }, "radius")
-    }
-
-    fn scaled(&self) -> Body {
-        let part = self.whole();
+    fn solid(&self) -> Solid {
+        let sphere = |radius| MassProperties::sphere(radius, self.density);
+        let whole = sphere(self.radius);
+        let part = self
+            .wall
+            .map_or(whole, |wall| whole.less(sphere(self.radius - wall)))
+            .and(MassProperties::point(self.load, self.offset));
         let square = self.radius * self.radius;
         let ball = Ball {
             offset: -part.centre / self.radius,
             radius: 1.0,
         };
-        Body {
-            hull: Surface::OneBall(OneBall::new(ball, true)),
-            half_separation: 0.0,
-            transverse: part.transverse / part.mass / square,
-            axial: part.axial / part.mass / square,
+        Solid {
+            unit: self.radius,
+            mass: part.mass,
+            transverse_inertia: part.transverse,
+            axial_inertia: part.axial,
+            centre_of_mass: part.centre,
+            is_filled: false,
+            outline: Arc::halves(-part.centre, self.radius, self.radius),
+            scaled: Body {
+                hull: Surface::OneBall(OneBall::new(ball, true)),
+                half_separation: 0.0,
+                transverse: part.transverse / part.mass / square,
+                axial: part.axial / part.mass / square,
+            },
         }
+    }
+
+    fn hollow(self, wall: f64) -> Result<Self, Error> {
+        let wall = hollow::checked(wall, self.radius, (self.radius, "at most the radius (m)"))?;
+        representable(Self { wall, ..self }, "radius")
     }
 }

@@ -13,14 +13,14 @@ mod spheroid;
 
 pub use dumbbell::Dumbbell;
 pub(crate) use hull::{AxisMotion, Hull, HullPart, with_hull};
-pub use hull::{Ball, Ellipsoid, EqualBalls, OneBall, Sphere, Surface, TwoBalls};
+pub use hull::{Ball, Balls, Ellipsoid, EqualBalls, OneBall, Sphere, Surface, TwoBalls};
 pub use loaded_sphere::LoadedSphere;
 pub use outline::Arc;
 pub use spherocylinder::Spherocylinder;
 pub use spheroid::Spheroid;
 
 use super::pieces::Piece;
-use super::{check_density, check_length};
+use super::{check_density, check_distance, check_length};
 use crate::Error;
 use crate::math::{Quaternion, Vector};
 use hollow::{INERTIA, WALL, made};
@@ -38,30 +38,10 @@ pub struct Body {
     pub axial: f64,
 }
 
-/// A body of revolution in SI units.
+/// A shape of a body of revolution.
 pub trait Shape {
-    /// The core's unit of length R, in m.
-    fn unit(&self) -> f64;
-    /// Mass m, in kg.
-    fn mass(&self) -> f64;
-    /// Moment of inertia J_xx about any axis through the centre of mass perpendicular to the symmetry axis, in kg m².
-    fn transverse_inertia(&self) -> f64;
-    /// Moment of inertia J_zz about the symmetry axis, in kg m².
-    fn axial_inertia(&self) -> f64;
-    /// Position of the centre of mass on the axis, in m, relative to the middle of the shape: the midpoint of the centres of its
-    /// two spheres, or the centre of a single one.
-    fn centre_of_mass(&self) -> f64 {
-        0.0
-    }
-    /// True if the body is its convex hull; false if it is made of the spheres of its hull.
-    fn is_filled(&self) -> bool {
-        false
-    }
-    /// The curve that the surface cuts out of a plane through the axis, as far as it is not straight: the arc at the end to which the
-    /// axis points, and that at the other end, joined by a straight line. In m; the origin is the centre of mass.
-    fn outline(&self) -> [Arc; 2];
-    /// The body in the core's units.
-    fn scaled(&self) -> Body;
+    /// The body in SI units and in the core's.
+    fn solid(&self) -> Solid;
     /// The body with a wall of this thickness, in m: the shape less itself drawn in by it; the whole shape if it leaves nothing inside.
     ///
     /// # Errors
@@ -82,11 +62,13 @@ pub struct Solid {
     pub transverse_inertia: f64,
     /// Moment of inertia J_zz about the symmetry axis, in kg m².
     pub axial_inertia: f64,
-    /// Position of the centre of mass on the axis, in m, relative to the middle of the shape ([`Shape::centre_of_mass`]).
+    /// Position of the centre of mass on the axis, in m, relative to the middle of the shape: the midpoint of the centres of its
+    /// two spheres, or the centre of a single one.
     pub centre_of_mass: f64,
-    /// True if the body is its convex hull ([`Shape::is_filled`]).
+    /// True if the body is its convex hull; false if it is made of the spheres of its hull.
     pub is_filled: bool,
-    /// The outline ([`Shape::outline`]).
+    /// The curve that the surface cuts out of a plane through the axis, as far as it is not straight: the arc at the end to which the
+    /// axis points, and that at the other end, joined by a straight line. In m; the origin is the centre of mass.
     pub outline: [Arc; 2],
     /// The body in the core's units.
     pub scaled: Body,
@@ -94,16 +76,7 @@ pub struct Solid {
 
 impl<S: Shape> From<S> for Solid {
     fn from(shape: S) -> Self {
-        Self {
-            unit: shape.unit(),
-            mass: shape.mass(),
-            transverse_inertia: shape.transverse_inertia(),
-            axial_inertia: shape.axial_inertia(),
-            centre_of_mass: shape.centre_of_mass(),
-            is_filled: shape.is_filled(),
-            outline: shape.outline(),
-            scaled: shape.scaled(),
-        }
+        shape.solid()
     }
 }
 
@@ -120,33 +93,30 @@ impl Solid {
         height >= lowest * (1.0 - 4.0 * f64::EPSILON)
     }
 
-    /// The body with these moments of inertia across and about its axis, in kg m², instead of those of its matter.
-    ///
-    /// # Errors
-    /// Unless matter within the hull can have them: both positive, the second at most twice the first.
-    pub fn with_inertia(self, moments: [f64; 2]) -> Result<Self, Error> {
-        hollow::with_inertia(self, moments)
-    }
-
-    /// The parts with which it touches another body, in m and the principal axes, where they are known.
-    pub(super) fn pieces(&self) -> Option<Vec<Piece>> {
-        let (hull, unit) = (&self.scaled.hull, self.unit);
-        let Some(balls) = hull.balls() else {
-            let [across, along] = hull.semi_axes()?.map(|axis| axis * unit);
-            let semi_axes = [across, across, along];
-            let ellipsoid = Piece::ellipsoid(semi_axes, Quaternion::IDENTITY, Vector::default());
-            return Some(vec![ellipsoid]);
+    /// The parts with which it touches another body, in m and the principal axes.
+    pub(super) fn pieces(&self) -> Vec<Piece> {
+        let unit = self.unit;
+        let balls = match &self.scaled.hull {
+            Surface::EqualBalls(hull) => hull.balls(),
+            Surface::TwoBalls(hull) => hull.balls(),
+            Surface::OneBall(hull) => hull.balls(),
+            Surface::Ellipsoid(hull) => {
+                let [across, along] = hull.semi_axes().map(|axis| axis * unit);
+                let semi_axes = [across, across, along];
+                let centre = Vector::default();
+                return vec![Piece::ellipsoid(semi_axes, Quaternion::IDENTITY, centre)];
+            }
         };
         let place = |ball: &Ball| Vector::new(0.0, 0.0, unit * ball.offset);
-        if let (true, [one, two]) = (self.is_filled, &balls[..])
+        if let (true, [one, two]) = (self.is_filled, balls)
             && one.offset != two.offset
         {
             let ends = [place(two), place(one)];
-            return Some(vec![Piece::rod(ends, unit * one.radius, false)]);
+            return vec![Piece::rod(ends, unit * one.radius, false)];
         }
         let piece = |ball: &Ball| Piece::ball(place(ball), unit * ball.radius);
         let count = if self.is_filled { 1 } else { balls.len() };
-        Some(balls[..count].iter().map(piece).collect())
+        balls[..count].iter().map(piece).collect()
     }
 
     /// The largest value of [`Solid::lowest`] over all angles, in m.
@@ -158,18 +128,18 @@ impl Solid {
 /// The shape, unless its mass, its inertia or their ratio overflows or underflows: then an error that names `name`, the
 /// parameter that sets its size.
 fn representable<S: Shape>(shape: S, name: &'static str) -> Result<S, Error> {
-    let body = shape.scaled();
+    let solid = shape.solid();
     let all = [
-        shape.mass(),
-        shape.transverse_inertia(),
-        shape.axial_inertia(),
-        body.transverse,
-        body.axial,
+        solid.mass,
+        solid.transverse_inertia,
+        solid.axial_inertia,
+        solid.scaled.transverse,
+        solid.scaled.axial,
     ];
     Error::unless_beyond(
         all.iter().all(|x| x.is_normal()),
         name,
-        shape.unit(),
+        solid.unit,
         "such that mass and inertia neither overflow nor underflow",
     )?;
     Ok(shape)
@@ -185,10 +155,4 @@ fn seen(elongation: f64) -> f64 {
     } else {
         elongation
     }
-}
-
-/// Checks that a length, in m, is not negative.
-fn check_distance(name: &'static str, value: f64) -> Result<(), Error> {
-    let positive = value.is_finite() && value >= 0.0;
-    Error::unless(positive, name, value, "finite and >= 0 (m)")
 }

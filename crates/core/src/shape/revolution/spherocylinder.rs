@@ -1,11 +1,11 @@
 //! A cylinder with hemispherical caps: its contact is that of a dumbbell, but it has more mass in the middle.
 
 use super::{
-    Arc, Body, EqualBalls, INERTIA, Shape, Solid, Surface, WALL, check_density, check_distance,
-    check_length, hollow, made, representable, seen,
+    Arc, INERTIA, Shape, Solid, WALL, check_density, check_distance, check_length, hollow, made,
+    representable,
 };
 use crate::Error;
-use crate::describe::{Arguments, Interval, Kind, Parameter};
+use crate::describe::{Arguments, Kind, Parameter};
 use std::f64::consts::PI;
 
 /// A homogeneous cylinder with hemispherical caps whose centres are `separation` apart, in SI units.
@@ -24,13 +24,7 @@ impl Spherocylinder {
         text: "a cylinder with hemispherical caps",
         parameters: &[
             Parameter::length("radius", "radius of cylinder and caps", 3e-3),
-            Parameter::number(
-                "separation",
-                "length of the cylinder",
-                "m",
-                Interval::NOT_NEGATIVE,
-                6e-3,
-            ),
+            Parameter::distance("separation", "length of the cylinder", 6e-3),
             Parameter::density("density"),
             WALL,
             INERTIA,
@@ -58,75 +52,29 @@ impl Spherocylinder {
         };
         representable(body, "radius")
     }
-
-    /// L/R.
-    fn elongation(&self) -> f64 {
-        self.separation / self.radius
-    }
-
-    /// m/(πρR³).
-    fn mass_factor(&self) -> f64 {
-        self.of_wall(|l| 4.0 / 3.0 + l, 3)
-    }
-
-    /// J_xx/(πρR⁵), L in R: the cylinder gives L(1/4 + L²/12), the hemispheres have their centres of mass at ±(L/2 + 3/8).
-    fn transverse_factor(&self) -> f64 {
-        self.of_wall(
-            |l| 8.0 / 15.0 + l * (3.0 / 4.0 + l * (1.0 / 3.0 + l / 12.0)),
-            5,
-        )
-    }
-
-    /// J_zz/(πρR⁵).
-    fn axial_factor(&self) -> f64 {
-        self.of_wall(|l| 8.0 / 15.0 + l / 2.0, 5)
-    }
-
-    fn of_wall(&self, factor: fn(f64) -> f64, power: i32) -> f64 {
-        let wall = self.wall.map(|wall| wall / self.radius);
-        hollow::of_wall(factor, power, self.elongation(), wall)
-    }
 }
 
+/// m/(πρR³), J_xx/(πρR⁵) and J_zz/(πρR⁵), L in R: of J_xx the cylinder gives L(1/4 + L²/12), and the hemispheres have their centres of mass at
+/// ±(L/2 + 3/8).
+const FACTORS: [fn(f64) -> f64; 3] = [
+    |l| 4.0 / 3.0 + l,
+    |l| 8.0 / 15.0 + l * (3.0 / 4.0 + l * (1.0 / 3.0 + l / 12.0)),
+    |l| 8.0 / 15.0 + l / 2.0,
+];
+
 impl Shape for Spherocylinder {
-    fn unit(&self) -> f64 {
-        self.radius
-    }
-
-    fn mass(&self) -> f64 {
-        self.density * self.radius.powi(3) * PI * self.mass_factor()
-    }
-
-    fn transverse_inertia(&self) -> f64 {
-        self.density * self.radius.powi(5) * PI * self.transverse_factor()
-    }
-
-    fn axial_inertia(&self) -> f64 {
-        self.density * self.radius.powi(5) * PI * self.axial_factor()
-    }
-
-    fn is_filled(&self) -> bool {
-        true
-    }
-
-    fn outline(&self) -> [Arc; 2] {
+    fn solid(&self) -> Solid {
         let half = 0.5 * self.separation;
-        Arc::caps([half, -half], [self.radius; 2], [0.5 * PI; 2])
+        let outline = Arc::caps([half, -half], [self.radius; 2], [0.5 * PI; 2]);
+        let given = [self.radius, self.separation, self.density];
+        Solid {
+            is_filled: true,
+            ..hollow::of_equal_caps(given, self.wall, FACTORS, outline)
+        }
     }
 
     fn hollow(self, wall: f64) -> Result<Self, Error> {
         let wall = hollow::checked(wall, self.radius, (self.radius, "at most the radius (m)"))?;
         representable(Self { wall, ..self }, "radius")
-    }
-
-    fn scaled(&self) -> Body {
-        let mass = self.mass_factor();
-        let half_separation = 0.5 * seen(self.elongation());
-        Body {
-            hull: Surface::EqualBalls(EqualBalls::new(half_separation)),
-            half_separation,
-            transverse: self.transverse_factor() / mass,
-            axial: self.axial_factor() / mass,
-        }
     }
 }

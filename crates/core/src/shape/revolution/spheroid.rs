@@ -18,17 +18,8 @@ pub struct Spheroid {
     equatorial: f64,
     polar: f64,
     density: f64,
-    /// The inside of a hollow one.
-    cavity: Option<Cavity>,
-}
-
-/// A spheroid drawn in by the wall: its volume, and its moments of inertia across and about the axis at density 1, in the core's unit of
-/// length.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Cavity {
-    volume: f64,
-    transverse: f64,
-    axial: f64,
+    /// Of the inside of a hollow one: its volume, and its moments of inertia across and about the axis at density 1, in the core's unit of length.
+    cavity: Option<[f64; 3]>,
 }
 
 impl Spheroid {
@@ -82,83 +73,61 @@ impl Spheroid {
         representable(body, "equatorial")
     }
 
-    /// Semi-axes a (equatorial) and c (polar) in the core's unit of length.
-    fn axes(&self) -> (f64, f64) {
-        (self.equatorial / self.unit(), self.polar / self.unit())
+    /// The core's unit of length, and the semi-axes a (equatorial) and c (polar) in it.
+    fn axes(&self) -> (f64, (f64, f64)) {
+        let unit = self.equatorial.max(self.polar);
+        (unit, (self.equatorial / unit, self.polar / unit))
     }
 }
 
 impl Shape for Spheroid {
-    fn unit(&self) -> f64 {
-        self.equatorial.max(self.polar)
-    }
-
-    fn mass(&self) -> f64 {
-        let (a, c) = self.axes();
-        let unit = self.density * self.unit().powi(3);
-        let full = unit * (4.0 / 3.0 * PI) * (a * a * c);
-        self.cavity
-            .map_or(full, |inside| full - unit * inside.volume)
-    }
-
-    fn transverse_inertia(&self) -> f64 {
-        self.mass() * self.unit().powi(2) * self.scaled().transverse
-    }
-
-    fn axial_inertia(&self) -> f64 {
-        self.mass() * self.unit().powi(2) * self.scaled().axial
-    }
-
-    fn is_filled(&self) -> bool {
-        true
-    }
-
-    fn outline(&self) -> [Arc; 2] {
-        Arc::halves(0.0, self.polar, self.equatorial)
+    fn solid(&self) -> Solid {
+        let (unit, (a, c)) = self.axes();
+        let cube = self.density * unit.powi(3);
+        let mut mass = cube * (4.0 / 3.0 * PI) * (a * a * c);
+        let (mut transverse, mut axial) = ((a * a + c * c) / 5.0, 2.0 / 5.0 * (a * a));
+        if let Some([inside, across, about]) = self.cavity {
+            let volume = 4.0 / 3.0 * PI * (a * a * c);
+            let rest = volume - inside;
+            mass -= cube * inside;
+            transverse = (volume * transverse - across) / rest;
+            axial = (volume * axial - about) / rest;
+        }
+        let square = mass * unit.powi(2);
+        Solid {
+            unit,
+            mass,
+            transverse_inertia: square * transverse,
+            axial_inertia: square * axial,
+            centre_of_mass: 0.0,
+            is_filled: true,
+            outline: Arc::halves(0.0, self.polar, self.equatorial),
+            scaled: Body {
+                hull: Surface::Ellipsoid(Ellipsoid::new(a, c)),
+                half_separation: 0.0,
+                transverse,
+                axial,
+            },
+        }
     }
 
     fn hollow(self, wall: f64) -> Result<Self, Error> {
+        let (unit, axes) = self.axes();
+        let allowed = "at most the equatorial and the polar semi-axis (m)";
         let thickest = self.equatorial.min(self.polar);
-        let wall = hollow::checked(
-            wall,
-            self.unit(),
-            (
-                thickest,
-                "at most the equatorial and the polar semi-axis (m)",
-            ),
-        )?;
-        let cavity = wall.map(|wall| cavity(self.axes(), wall / self.unit()));
+        let wall = hollow::checked(wall, unit, (thickest, allowed))?;
+        let cavity = wall.map(|wall| cavity(axes, wall / unit));
         representable(Self { cavity, ..self }, "equatorial")
-    }
-
-    fn scaled(&self) -> Body {
-        let (a, c) = self.axes();
-        let (transverse, axial) = ((a * a + c * c) / 5.0, 2.0 / 5.0 * (a * a));
-        let full = Body {
-            hull: Surface::Ellipsoid(Ellipsoid::new(a, c)),
-            half_separation: 0.0,
-            transverse,
-            axial,
-        };
-        self.cavity.map_or(full, |inside| {
-            let volume = 4.0 / 3.0 * PI * (a * a * c);
-            let rest = volume - inside.volume;
-            Body {
-                transverse: (volume * transverse - inside.transverse) / rest,
-                axial: (volume * axial - inside.axial) / rest,
-                ..full
-            }
-        })
     }
 }
 
-/// The spheroid with semi-axes a and c, drawn in by `wall`: all points that are as far below the surface, or farther.
+/// Volume and moments of inertia of the spheroid with semi-axes a and c, drawn in by `wall`: all points that are as far below the surface, or farther.
 ///
 /// From the point (a√(1 − x²), cx) of the meridian the normal leads to ϱ = √(1 − x²)(a − w/(aN)), z = x(c − w/(cN)) with
 /// N² = (1 − x²)/a² + x²/c² and dz/dx = c − w/(a²cN³). This curve ends where it meets the longer axis: at the pole or the equator, or before
 /// if the wall is thicker than the least radius of curvature there, at N = w/min(a, c)². The integrals over the slices have no elementary
 /// form that is short; Gauss's quadrature gives them to rounding.
-fn cavity((a, c): (f64, f64), wall: f64) -> Cavity {
+fn cavity((a, c): (f64, f64), wall: f64) -> [f64; 3] {
     let short = a.min(c);
     // N² = 1/a² + slope x².
     let slope = (a - c) * (a + c) / (a * a * c * c);
@@ -186,12 +155,7 @@ fn cavity((a, c): (f64, f64), wall: f64) -> Cavity {
     let exact = 2.0 * f64::EPSILON * (a * a * c);
     let exact = [exact, exact, exact * (a * a)];
     let whole = gauss(&slices, ends);
-    let [volume, transverse, axial] = halved(&slices, ends, whole, exact, DEPTH);
-    Cavity {
-        volume,
-        transverse,
-        axial,
-    }
+    halved(&slices, ends, whole, exact, DEPTH)
 }
 
 /// Largest number of halvings.

@@ -2,42 +2,94 @@
 
 use super::{AxisMotion, Ball, Hull, HullPart};
 use crate::simd::{Mask, Pack};
-use pulp::{Scalar, Simd};
+use pulp::Simd;
 
-/// The parameters of a hull of spheres, whose gaps are linear in e_z.
-pub(super) trait Balls: Copy {
-    /// True if the hull has two spheres.
-    const TWO: bool;
+/// Spheres whose centres are on the axis: `TWO`, or one. Both touch the plane at once when e_z is `cos_tilt` and the centre of mass is at the
+/// level; the gaps are height + s(e_z − `cos_tilt`), (2). Two `EQUAL` ones are kept apart because half of the arithmetic then drops out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Balls<const TWO: bool, const EQUAL: bool> {
+    /// Spheres 1 and 2; one alone is in both places.
+    balls: [Ball; 2],
+    /// ℓ = (ϱ₁ − ϱ₂)/(s₁ − s₂), in (−1, 1); of one sphere +1 if it is recorded as sphere 1, −1 if as sphere 2, and so always the lower one.
+    cos_tilt: f64,
+    level: f64,
+}
+
+/// One sphere, whose centre need not be the centre of mass.
+pub type OneBall = Balls<false, false>;
+/// Two spheres, neither of which contains the other.
+pub type TwoBalls = Balls<true, false>;
+/// Two spheres of radius 1 with the centre of mass in the middle.
+pub type EqualBalls = Balls<true, true>;
+
+impl OneBall {
+    /// The hull `ball`, recorded as sphere 1 if `first`, else as sphere 2.
+    pub(in crate::shape) fn new(ball: Ball, first: bool) -> Self {
+        Self {
+            balls: [ball; 2],
+            cos_tilt: if first { 1.0 } else { -1.0 },
+            level: ball.radius,
+        }
+    }
+}
+
+impl TwoBalls {
+    /// Two spheres with centres `separation` apart.
+    pub(in crate::shape) fn new(balls: [Ball; 2], separation: f64) -> Self {
+        let [one, two] = balls;
+        let cos_tilt = (one.radius - two.radius) / separation;
+        Self {
+            balls,
+            cos_tilt,
+            level: one.offset.mul_add(-cos_tilt, one.radius),
+        }
+    }
+}
+
+impl EqualBalls {
+    /// Spheres at ±`half_separation`.
+    pub(in crate::shape) fn new(half_separation: f64) -> Self {
+        let ball = |offset| Ball {
+            offset,
+            radius: 1.0,
+        };
+        Self {
+            balls: [half_separation, -half_separation].map(ball),
+            cos_tilt: 0.0,
+            level: 1.0,
+        }
+    }
+}
+
+impl<const TWO: bool, const EQUAL: bool> Balls<TWO, EQUAL> {
+    /// The balls themselves.
+    pub(in crate::shape) fn balls(&self) -> &[Ball] {
+        &self.balls[..1 + usize::from(TWO)]
+    }
+
     /// The levers s of spheres 1 and 2.
-    fn levers(&self) -> [f64; 2];
+    #[inline(always)]
+    fn levers(&self) -> [f64; 2] {
+        let [one, two] = [self.balls[0].offset, self.balls[1].offset];
+        [one, if EQUAL { -one } else { two }]
+    }
+
     /// e_z minus its value where both spheres touch: negative where sphere 1 is the lower one.
-    fn lean<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K>;
-    /// [`Hull::level`].
-    fn level(&self) -> f64;
-    /// Height above which no part can touch while |e_z| ≤ `max_cos_tilt`.
-    fn ceiling<S: Simd, const K: usize>(&self, max_cos_tilt: Pack<S, K>) -> Pack<S, K>;
-    /// The radius of sphere 1 where `one`, else of sphere 2.
-    fn radius<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Pack<S, K>;
-    /// +1 or −1 for a contact of sphere 1 or 2.
-    fn name<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Pack<S, K>;
+    #[inline(always)]
+    fn lean<S: Simd>(&self, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+        if TWO && !EQUAL {
+            cos_tilt - self.cos_tilt
+        } else {
+            cos_tilt
+        }
+    }
 }
 
-/// The balls themselves.
-pub(super) fn balls<B: Balls>(hull: &B) -> Vec<Ball> {
-    let ball = |sphere: usize| Ball {
-        offset: hull.levers()[sphere],
-        radius: hull
-            .radius(Mask::<_, 1>::splat(Scalar::new(), sphere == 0))
-            .as_slice()[0],
-    };
-    (0..1 + usize::from(B::TWO)).map(ball).collect()
-}
-
-impl<B: Balls> Hull for B {
-    const TWO: bool = B::TWO;
+impl<const TWO: bool, const EQUAL: bool> Hull for Balls<TWO, EQUAL> {
+    const TWO: bool = TWO;
 
     fn level(&self) -> f64 {
-        Balls::level(self)
+        self.level
     }
 
     fn sharpness(&self) -> f64 {
@@ -45,22 +97,23 @@ impl<B: Balls> Hull for B {
     }
 
     #[inline(always)]
-    fn ceiling<S: Simd, const K: usize>(&self, max_cos_tilt: Pack<S, K>) -> Pack<S, K> {
-        Balls::ceiling(self, max_cos_tilt)
+    fn ceiling<S: Simd>(&self, max_cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+        let [one, two] = self.levers();
+        if EQUAL || !TWO {
+            return one.abs() * max_cos_tilt;
+        }
+        let first = max_cos_tilt.mul_add(one.abs(), one * self.cos_tilt);
+        first.max(max_cos_tilt.mul_add(two.abs(), two * self.cos_tilt))
     }
 
     #[inline(always)]
-    fn curvature_bound<S: Simd, const K: usize>(
-        &self,
-        amplitude: Pack<S, K>,
-        _: Pack<S, K>,
-    ) -> Pack<S, K> {
+    fn curvature_bound<S: Simd>(&self, amplitude: Pack<S, 1>, _: Pack<S, 1>) -> Pack<S, 1> {
         let [one, two] = self.levers();
         one.abs().max(two.abs()) * amplitude
     }
 
     #[inline(always)]
-    fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> HullPart<S, K> {
+    fn part<S: Simd>(&self, one: Mask<S, 1>) -> HullPart<S> {
         let [first, second] = self.levers();
         HullPart {
             one,
@@ -71,14 +124,14 @@ impl<B: Balls> Hull for B {
     /// The lower bounds of both gaps have the same curvature. They cross only when the axis, turning at its present rate, reaches
     /// the e_z at which both spheres touch: until then the lower sphere's bound is the smaller one, afterwards the other's.
     #[inline(always)]
-    fn nearer<S: Simd, const K: usize>(
+    fn nearer<S: Simd>(
         &self,
-        height: Pack<S, K>,
-        vz: Pack<S, K>,
-        axis_motion: &AxisMotion<S, K>,
-        bound: Pack<S, K>,
-    ) -> HullPart<S, K> {
-        if !B::TWO {
+        height: Pack<S, 1>,
+        vz: Pack<S, 1>,
+        axis_motion: &AxisMotion<S, 1>,
+        bound: Pack<S, 1>,
+    ) -> HullPart<S> {
+        if !TWO {
             return self.part(Mask::splat(height.simd(), true));
         }
         let (lean, rate) = (self.lean(axis_motion.cos_tilt), axis_motion.rate);
@@ -93,66 +146,64 @@ impl<B: Balls> Hull for B {
     }
 
     #[inline(always)]
-    fn gap<S: Simd, const K: usize>(
+    fn gap<S: Simd>(
         &self,
-        part: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-        height: Pack<S, K>,
-    ) -> Pack<S, K> {
+        part: &HullPart<S>,
+        cos_tilt: Pack<S, 1>,
+        height: Pack<S, 1>,
+    ) -> Pack<S, 1> {
         part.own.mul_add(self.lean(cos_tilt), height) // (2)
     }
 
     #[inline(always)]
-    fn touching_height<S: Simd, const K: usize>(
-        &self,
-        part: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-    ) -> Pack<S, K> {
+    fn touching_height<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
         -(part.own * self.lean(cos_tilt)) // (2)
     }
 
     #[inline(always)]
-    fn lever<S: Simd, const K: usize>(&self, part: &HullPart<S, K>, _: Pack<S, K>) -> Pack<S, K> {
+    fn lever<S: Simd>(&self, part: &HullPart<S>, _: Pack<S, 1>) -> Pack<S, 1> {
         part.own
     }
 
     #[inline(always)]
-    fn radius<S: Simd, const K: usize>(&self, part: &HullPart<S, K>, _: Pack<S, K>) -> Pack<S, K> {
-        Balls::radius(self, part.one)
+    fn radius<S: Simd>(&self, part: &HullPart<S>, _: Pack<S, 1>) -> Pack<S, 1> {
+        let [one, two] = [self.balls[0].radius, self.balls[1].radius];
+        if EQUAL {
+            Pack::splat(part.own.simd(), 1.0)
+        } else if TWO {
+            part.one.select(one, two)
+        } else {
+            Pack::splat(part.own.simd(), one)
+        }
     }
 
     #[inline(always)]
-    fn curvature<S: Simd, const K: usize>(
+    fn curvature<S: Simd>(
         &self,
-        part: &HullPart<S, K>,
-        axis_motion: &AxisMotion<S, K>,
+        part: &HullPart<S>,
+        axis_motion: &AxisMotion<S, 1>,
         addend: f64,
-    ) -> Pack<S, K> {
+    ) -> Pack<S, 1> {
         part.own.mul_add(axis_motion.acceleration, addend)
     }
 
     #[inline(always)]
-    fn derivatives<S: Simd, const K: usize>(
+    fn derivatives<S: Simd>(
         &self,
-        part: &HullPart<S, K>,
-        axis_motion: &AxisMotion<S, K>,
-    ) -> [Pack<S, K>; 3] {
-        linear_derivatives(part.own, axis_motion)
+        part: &HullPart<S>,
+        axis_motion: &AxisMotion<S, 1>,
+    ) -> [Pack<S, 1>; 3] {
+        let second = part.own * axis_motion.acceleration;
+        let third = -(part.own * axis_motion.square) * axis_motion.rate;
+        [second, third, -axis_motion.square * second]
     }
 
     #[inline(always)]
-    fn name<S: Simd, const K: usize>(&self, part: &HullPart<S, K>, _: Pack<S, K>) -> Pack<S, K> {
-        Balls::name(self, part.one)
+    fn name<S: Simd>(&self, part: &HullPart<S>, _: Pack<S, 1>) -> Pack<S, 1> {
+        if TWO {
+            part.one.select(1.0, -1.0_f64)
+        } else {
+            Pack::splat(part.own.simd(), self.cos_tilt)
+        }
     }
-}
-
-/// The second to fourth time derivatives of −h for a gap that is linear in e_z.
-#[inline(always)]
-fn linear_derivatives<S: Simd, const K: usize>(
-    lever: Pack<S, K>,
-    axis_motion: &AxisMotion<S, K>,
-) -> [Pack<S, K>; 3] {
-    let second = lever * axis_motion.acceleration;
-    let third = -(lever * axis_motion.square) * axis_motion.rate;
-    [second, third, -axis_motion.square * second]
 }

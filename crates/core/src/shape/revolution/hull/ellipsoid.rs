@@ -39,14 +39,14 @@ impl Ellipsoid {
     }
 
     /// a and c.
-    pub(super) fn semi_axes(&self) -> [f64; 2] {
+    pub(in crate::shape) fn semi_axes(&self) -> [f64; 2] {
         let a = self.equatorial;
         [a, a.mul_add(a, self.excess).sqrt()]
     }
 
     /// h, from h² = a²(1 − e_z²) + c²e_z²: a sum of positive terms, in which no digits cancel.
     #[inline(always)]
-    fn support<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K> {
+    fn support<S: Simd>(&self, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
         let a2 = self.equatorial * self.equatorial;
         let across = a2 * ((1.0 - cos_tilt) * (1.0 + cos_tilt)).max(0.0);
         let along = self.excess + a2; // c²
@@ -55,7 +55,7 @@ impl Ellipsoid {
 
     /// 1/h and h − a, the latter as De_z²/(h + a), which does not subtract nearly equal numbers; with one quotient for both.
     #[inline(always)]
-    fn profile<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> [Pack<S, K>; 2] {
+    fn profile<S: Simd>(&self, cos_tilt: Pack<S, 1>) -> [Pack<S, 1>; 2] {
         let support = self.support(cos_tilt);
         let sum = self.equatorial + support;
         let quotient = 1.0 / (support * sum);
@@ -67,13 +67,13 @@ impl Ellipsoid {
 
     /// 1/h.
     #[inline(always)]
-    fn inverse<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K> {
+    fn inverse<S: Simd>(&self, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
         self.profile(cos_tilt)[0]
     }
 
     /// h − a.
     #[inline(always)]
-    fn rise<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K> {
+    fn rise<S: Simd>(&self, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
         self.profile(cos_tilt)[1]
     }
 }
@@ -90,7 +90,7 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn ceiling<S: Simd, const K: usize>(&self, max_cos_tilt: Pack<S, K>) -> Pack<S, K> {
+    fn ceiling<S: Simd>(&self, max_cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
         if self.excess > 0.0 {
             self.rise(max_cos_tilt.min(1.0))
         } else {
@@ -99,11 +99,11 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn curvature_bound<S: Simd, const K: usize>(
+    fn curvature_bound<S: Simd>(
         &self,
-        amplitude: Pack<S, K>,
-        max_cos_tilt: Pack<S, K>,
-    ) -> Pack<S, K> {
+        amplitude: Pack<S, 1>,
+        max_cos_tilt: Pack<S, 1>,
+    ) -> Pack<S, 1> {
         let max_cos_tilt = (max_cos_tilt * (1.0 + 4.0 * f64::EPSILON)).min(1.0);
         if self.excess > 0.0 {
             self.excess / self.equatorial * (amplitude * max_cos_tilt)
@@ -113,7 +113,7 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> HullPart<S, K> {
+    fn part<S: Simd>(&self, one: Mask<S, 1>) -> HullPart<S> {
         HullPart {
             one,
             own: Pack::splat(one.simd(), 0.0),
@@ -121,13 +121,13 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn nearer<S: Simd, const K: usize>(
+    fn nearer<S: Simd>(
         &self,
-        _: Pack<S, K>,
-        _: Pack<S, K>,
-        axis_motion: &AxisMotion<S, K>,
-        _: Pack<S, K>,
-    ) -> HullPart<S, K> {
+        _: Pack<S, 1>,
+        _: Pack<S, 1>,
+        axis_motion: &AxisMotion<S, 1>,
+        _: Pack<S, 1>,
+    ) -> HullPart<S> {
         HullPart {
             one: Mask::splat(axis_motion.cos_tilt.simd(), true),
             own: self.inverse(axis_motion.cos_tilt),
@@ -135,49 +135,37 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn gap<S: Simd, const K: usize>(
+    fn gap<S: Simd>(
         &self,
-        _: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-        height: Pack<S, K>,
-    ) -> Pack<S, K> {
+        _: &HullPart<S>,
+        cos_tilt: Pack<S, 1>,
+        height: Pack<S, 1>,
+    ) -> Pack<S, 1> {
         height - self.rise(cos_tilt)
     }
 
     #[inline(always)]
-    fn touching_height<S: Simd, const K: usize>(
-        &self,
-        _: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-    ) -> Pack<S, K> {
+    fn touching_height<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
         self.rise(cos_tilt)
     }
 
     #[inline(always)]
-    fn lever<S: Simd, const K: usize>(
-        &self,
-        _: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-    ) -> Pack<S, K> {
+    fn lever<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
         (-self.excess * cos_tilt) * self.inverse(cos_tilt)
     }
 
     #[inline(always)]
-    fn radius<S: Simd, const K: usize>(
-        &self,
-        _: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-    ) -> Pack<S, K> {
+    fn radius<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
         self.equatorial * self.equatorial * self.inverse(cos_tilt)
     }
 
     #[inline(always)]
-    fn curvature<S: Simd, const K: usize>(
+    fn curvature<S: Simd>(
         &self,
-        _: &HullPart<S, K>,
-        axis_motion: &AxisMotion<S, K>,
+        _: &HullPart<S>,
+        axis_motion: &AxisMotion<S, 1>,
         addend: f64,
-    ) -> Pack<S, K> {
+    ) -> Pack<S, 1> {
         let inverse = self.inverse(axis_motion.cos_tilt);
         let (e, v) = (axis_motion.cos_tilt, axis_motion.rate);
         let first = self.excess * (e * v) * inverse; // h′
@@ -186,11 +174,11 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn derivatives<S: Simd, const K: usize>(
+    fn derivatives<S: Simd>(
         &self,
-        part: &HullPart<S, K>,
-        axis_motion: &AxisMotion<S, K>,
-    ) -> [Pack<S, K>; 3] {
+        part: &HullPart<S>,
+        axis_motion: &AxisMotion<S, 1>,
+    ) -> [Pack<S, 1>; 3] {
         let inverse = part.own;
         let (e, v, a) = (
             axis_motion.cos_tilt,
@@ -210,11 +198,7 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn name<S: Simd, const K: usize>(
-        &self,
-        _: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-    ) -> Pack<S, K> {
+    fn name<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
         cos_tilt.lt(0.0).select(1.0, -1.0_f64)
     }
 }

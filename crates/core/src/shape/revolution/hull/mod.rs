@@ -9,12 +9,9 @@
 
 mod balls;
 mod ellipsoid;
-mod one_ball;
-mod two_balls;
 
+pub use balls::{Balls, EqualBalls, OneBall, TwoBalls};
 pub use ellipsoid::Ellipsoid;
-pub use one_ball::OneBall;
-pub use two_balls::{EqualBalls, TwoBalls};
 
 use crate::simd::{Mask, Pack, one};
 use pulp::{Scalar, Simd};
@@ -64,12 +61,12 @@ pub struct Ball {
 
 /// The part of a hull whose gap is evaluated, in each lane.
 #[derive(Clone, Copy)]
-pub(crate) struct HullPart<S: Simd, const K: usize> {
+pub(crate) struct HullPart<S: Simd> {
     /// True if it is sphere 1; ignored where only one part can touch.
-    pub one: Mask<S, K>,
+    pub one: Mask<S, 1>,
     /// The parameter of its gap besides e_z: the lever s of a sphere. For a smooth hull it is 1/h where [`Hull::nearer`] was asked for
     /// the part, which the derivatives there need again.
-    pub own: Pack<S, K>,
+    pub own: Pack<S, 1>,
 }
 
 /// The vertical component of the axis, e_z, and its time derivatives. Since e_z = c + A cos(Ωt + φ), each derivative from the third
@@ -99,79 +96,63 @@ pub(crate) trait Hull: Copy {
     fn sharpness(&self) -> f64;
 
     /// Height above which no part can touch while |e_z| ≤ `max_cos_tilt`.
-    fn ceiling<S: Simd, const K: usize>(&self, max_cos_tilt: Pack<S, K>) -> Pack<S, K>;
+    fn ceiling<S: Simd>(&self, max_cos_tilt: Pack<S, 1>) -> Pack<S, 1>;
 
     /// A bound on |d²h/dt²|/Ω² for e_z = c + A cos(Ωt + φ): the contribution of rotation to the second derivative of a gap.
     /// `amplitude` is A, `max_cos_tilt` is |c| + A.
-    fn curvature_bound<S: Simd, const K: usize>(
+    fn curvature_bound<S: Simd>(
         &self,
-        amplitude: Pack<S, K>,
-        max_cos_tilt: Pack<S, K>,
-    ) -> Pack<S, K>;
+        amplitude: Pack<S, 1>,
+        max_cos_tilt: Pack<S, 1>,
+    ) -> Pack<S, 1>;
 
     /// Sphere 1 where `one`, else sphere 2; the whole hull if it has only one part.
-    fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> HullPart<S, K>;
+    fn part<S: Simd>(&self, one: Mask<S, 1>) -> HullPart<S>;
 
     /// The part whose gap has the lower bound that reaches 0 first. `bound` is M: f″ ≥ −M for the gap f of either part.
-    fn nearer<S: Simd, const K: usize>(
+    fn nearer<S: Simd>(
         &self,
-        height: Pack<S, K>,
-        vz: Pack<S, K>,
-        axis_motion: &AxisMotion<S, K>,
-        bound: Pack<S, K>,
-    ) -> HullPart<S, K>;
+        height: Pack<S, 1>,
+        vz: Pack<S, 1>,
+        axis_motion: &AxisMotion<S, 1>,
+        bound: Pack<S, 1>,
+    ) -> HullPart<S>;
 
     /// The gap f between a part and the plane, (2), negative where they overlap.
-    fn gap<S: Simd, const K: usize>(
+    fn gap<S: Simd>(
         &self,
-        part: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-        height: Pack<S, K>,
-    ) -> Pack<S, K>;
+        part: &HullPart<S>,
+        cos_tilt: Pack<S, 1>,
+        height: Pack<S, 1>,
+    ) -> Pack<S, 1>;
 
     /// Height at which a part touches.
-    fn touching_height<S: Simd, const K: usize>(
-        &self,
-        part: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-    ) -> Pack<S, K>;
+    fn touching_height<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1>;
 
     /// The lever s = −dh/de_z.
-    fn lever<S: Simd, const K: usize>(
-        &self,
-        part: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-    ) -> Pack<S, K>;
+    fn lever<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1>;
 
     /// The radius ϱ = h − e_z dh/de_z of the sphere that touches like this part.
-    fn radius<S: Simd, const K: usize>(
-        &self,
-        part: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-    ) -> Pack<S, K>;
+    fn radius<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1>;
 
     /// −d²h/dt² + `addend`.
-    fn curvature<S: Simd, const K: usize>(
+    fn curvature<S: Simd>(
         &self,
-        part: &HullPart<S, K>,
-        axis_motion: &AxisMotion<S, K>,
+        part: &HullPart<S>,
+        axis_motion: &AxisMotion<S, 1>,
         addend: f64,
-    ) -> Pack<S, K>;
+    ) -> Pack<S, 1>;
 
     /// −d²h/dt², −d³h/dt³ and −d⁴h/dt⁴ where [`Hull::nearer`] was asked for the part.
-    fn derivatives<S: Simd, const K: usize>(
+    fn derivatives<S: Simd>(
         &self,
-        part: &HullPart<S, K>,
-        axis_motion: &AxisMotion<S, K>,
-    ) -> [Pack<S, K>; 3];
+        part: &HullPart<S>,
+        axis_motion: &AxisMotion<S, 1>,
+    ) -> [Pack<S, 1>; 3];
 
     /// The end that a contact is recorded under, +1 or −1 for sphere 1 or 2; for a smooth hull, +1 if the half touches to which
     /// the axis points.
-    fn name<S: Simd, const K: usize>(
-        &self,
-        part: &HullPart<S, K>,
-        cos_tilt: Pack<S, K>,
-    ) -> Pack<S, K>;
+    fn name<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1>;
 }
 
 /// The hull of a body.
@@ -222,24 +203,6 @@ impl Surface {
         with_hull!(self, hull => hull.gap(&named(hull, sphere), one(cos_tilt), one(height)).as_slice()[0])
     }
 
-    /// The balls that it is made of, if it is.
-    pub(crate) fn balls(&self) -> Option<Vec<Ball>> {
-        match self {
-            Self::EqualBalls(hull) => Some(balls::balls(hull)),
-            Self::TwoBalls(hull) => Some(balls::balls(hull)),
-            Self::OneBall(hull) => Some(balls::balls(hull)),
-            Self::Ellipsoid(_) => None,
-        }
-    }
-
-    /// The semi-axes across and along the axis of an ellipsoid, if it is one.
-    pub(crate) fn semi_axes(&self) -> Option<[f64; 2]> {
-        match self {
-            Self::Ellipsoid(hull) => Some(hull.semi_axes()),
-            _ => None,
-        }
-    }
-
     /// Height at which a sphere touches.
     pub fn touching_height(&self, sphere: Sphere, cos_tilt: f64) -> f64 {
         with_hull!(self, hull => hull.touching_height(&named(hull, sphere), one(cos_tilt)).as_slice()[0])
@@ -261,7 +224,7 @@ impl Surface {
     }
 }
 
-fn named(hull: &impl Hull, sphere: Sphere) -> HullPart<Scalar, 1> {
+fn named(hull: &impl Hull, sphere: Sphere) -> HullPart<Scalar> {
     hull.part(Mask::splat(Scalar::new(), sphere == Sphere::One))
 }
 
