@@ -17,16 +17,6 @@ pub(super) struct CurvatureBounds {
 }
 
 impl CurvatureBounds {
-    /// Of points up to `reach` from the centre of mass, with a ball of radius `inner` about it inside of the body.
-    #[inline(always)]
-    fn new(gravity: f64, turn: &SpinBounds, reach: f64, inner: f64) -> Self {
-        Self {
-            near: inner * turn.radian,
-            first: gravity + turn.across * reach,
-            whole: gravity + turn.whole * reach,
-        }
-    }
-
     /// That which holds for a time.
     #[inline(always)]
     fn up_to(&self, time: f64) -> f64 {
@@ -39,24 +29,30 @@ impl CurvatureBounds {
 }
 
 impl<S: ConvexSurface> Convex<S> {
-    /// As [`crate::shape::RigidSurface`]'s.
-    pub(super) fn looks_back(&self) -> bool {
+    /// As [`crate::shape::BallTree`]'s.
+    pub(crate) fn looks_back(&self) -> bool {
         S::LOOKS_BACK
     }
 
+    /// Of the points of a part.
     #[inline(always)]
     fn bounds(&self, part: usize, at: &NormalMotion, turn: &SpinBounds) -> CurvatureBounds {
-        let reach = self.surface.reach(part);
-        CurvatureBounds::new(-at.acceleration, turn, reach, self.inner)
+        let (gravity, reach) = (-at.acceleration, self.surface.reach(part));
+        CurvatureBounds {
+            near: self.inner * turn.radian,
+            first: gravity + turn.across * reach,
+            whole: gravity + turn.whole * reach,
+        }
     }
 
-    /// As [`crate::shape::RigidSurface`]'s.
+    /// As [`crate::shape::BallTree`]'s.
     #[inline(always)]
-    pub(super) fn step(
+    pub(crate) fn step(
         &self,
         at: &NormalMotion,
         turn: &SpinBounds,
         departure: Option<Departure>,
+        _: Option<(usize, f64)>,
         most: f64,
     ) -> Step {
         #[cfg(test)]
@@ -88,9 +84,9 @@ impl<S: ConvexSurface> Convex<S> {
         first
     }
 
-    /// As [`crate::shape::RigidSurface`]'s.
+    /// As [`crate::shape::BallTree`]'s.
     #[inline(always)]
-    pub(super) fn backward(
+    pub(crate) fn backward(
         &self,
         part: usize,
         at: &NormalMotion,
@@ -113,16 +109,16 @@ impl<S: ConvexSurface> Convex<S> {
         BackwardBound::new(gap, before, since)
     }
 
-    /// As [`crate::shape::RigidSurface`]'s.
+    /// As [`crate::shape::BallTree`]'s.
     #[inline(always)]
-    pub(super) fn acceleration(&self, part: usize, at: &NormalMotion) -> f64 {
+    pub(crate) fn acceleration(&self, part: usize, at: &NormalMotion) -> f64 {
         let mut moved = NormalMotion::default();
         let own = self.own(at, &mut moved);
         own.acceleration - self.surface.along(part, own).second()
     }
 
-    /// As [`crate::shape::RigidSurface`]'s.
-    pub(super) fn another_touches(&self, departure: Departure, at: &NormalMotion) -> bool {
+    /// As [`crate::shape::BallTree`]'s.
+    pub(crate) fn another_touches(&self, departure: Departure, at: &NormalMotion) -> bool {
         let mut moved = NormalMotion::default();
         let own = self.own(at, &mut moved);
         let opening = |part: usize| self.surface.along(part, own).opening(own);

@@ -8,7 +8,7 @@ use crate::math::{Quaternion, Vector};
 use crate::motion::{Rotation, SpinBounds};
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
-use crate::shape::{NormalMotion, Rigid, up};
+use crate::shape::{NormalMotion, Rigid, each_surface, up};
 use crate::simd::elementary::RANGE;
 use std::ops::ControlFlow;
 
@@ -108,7 +108,7 @@ impl<'a> FirstContact<'a> {
             certain: 0.0,
             time: 0.0,
             near: departure.map(|left| (left.part, 0.0)),
-            looks_ahead: body.surface.looks_back(),
+            looks_ahead: each_surface!(&body.surface, surface => surface.looks_back()),
         }
     }
 
@@ -184,7 +184,9 @@ impl<'a> FirstContact<'a> {
         };
         let at = self.look(0.0).at;
         let surface = &self.body.surface;
-        surface.acceleration(left.part, &at) <= 0.0 && !surface.another_touches(left, &at)
+        each_surface!(surface, surface => {
+            surface.acceleration(left.part, &at) <= 0.0 && !surface.another_touches(left, &at)
+        })
     }
 
     /// From a look ahead of what is certain: a contact, or that the body is to be looked at elsewhere, or that nothing touched up to now.
@@ -194,10 +196,9 @@ impl<'a> FirstContact<'a> {
             return ControlFlow::Continue(());
         };
         let since = now.time - self.certain;
-        let backward = self
-            .body
-            .surface
-            .backward(part, &now.at, &self.bounds, since);
+        let backward = each_surface!(&self.body.surface, surface => {
+            surface.backward(part, &now.at, &self.bounds, since)
+        });
         let Some(ago) = backward.clear else {
             (self.time, self.looks_ahead) = (self.certain, false);
             return ControlFlow::Break(None);
@@ -238,7 +239,9 @@ impl<'a> FirstContact<'a> {
         let beside = self
             .near
             .map(|(part, only_until)| (part, only_until - from));
-        let step = surface.step(&now.at, &self.bounds, left, beside, clear);
+        let step = each_surface!(surface, surface => {
+            surface.step(&now.at, &self.bounds, left, beside, clear)
+        });
         let end = from + step.length;
         let square = step.length * step.length;
         if step.closes && step.bound * square <= INVISIBLE && step.length <= LAST * end {
@@ -263,14 +266,15 @@ impl<'a> FirstContact<'a> {
         self.time = self.certain;
         let only_until = from + step.only_until;
         self.near = Some((step.part, only_until));
-        let looks_ahead = std::mem::replace(&mut self.looks_ahead, surface.looks_back());
+        let looks_back = each_surface!(surface, surface => surface.looks_back());
+        let looks_ahead = std::mem::replace(&mut self.looks_ahead, looks_back);
         if !looks_ahead || only_until <= self.certain {
             return None;
         }
         let gap = GapExpansion {
             width: step.width,
             rate: step.rate,
-            acceleration: surface.acceleration(step.part, &now.at),
+            acceleration: each_surface!(surface, surface => surface.acceleration(step.part, &now.at)),
         };
         // Or else almost as far behind `certain` as that is from here.
         let further = self.certain + BACK * (self.certain - from);

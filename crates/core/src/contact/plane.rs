@@ -17,7 +17,7 @@
 //!
 //! Steps to the first root of these bounds converge quadratically to the contact. The same bounds hold backward in time, with −f′ for f′ and −**n**′
 //! for **n**′, so that the search may look on behind a step: where f, f′ and f″ expect the contact, or else almost as far again. If the bound from
-//! there is positive where the step ended, nothing touched in between ([`RigidSurface::backward`]), or an overlap began there once only, as late as the bound
+//! there is positive where the step ended, nothing touched in between ([`BallTree::backward`]), or an overlap began there once only, as late as the bound
 //! says; if not, the search goes on at the end of the step. Where the contact is so near that the bound will be positive, the body is looked at
 //! there without a step before. To where f″ expects it the search converges with the third order. It ends when what is left of the gap is below
 //! the resolution. An overlap at the end of a step is rounding: one that approaches is a contact now, one that separates is none.
@@ -26,7 +26,7 @@ use super::certify::{TOUCHING, before, closing_speed, first_zero, zero};
 use crate::motion::SpinBounds;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
-use crate::shape::{BallTree, Least, NormalMotion, Point, Pruning, RigidSurface, each_surface};
+use crate::shape::{BallTree, Least, NormalMotion, Point, Pruning};
 
 /// Far from the contact nodes of the tree are not looked into where they allow a step of this part of the length that is found.
 const ENOUGH: f64 = 0.7;
@@ -112,58 +112,11 @@ pub(super) fn first_root(width: f64, rate: f64, bound: f64) -> f64 {
     first_zero(width, rate, closing_speed(width, rate, bound), bound)
 }
 
-impl RigidSurface {
+impl BallTree {
     /// A step that passes no contact, no longer than `most` > 0. `departure` holds at the beginning of a flight; `near` is a part
     /// that may be the first, and no other touches for so long.
     #[inline(always)]
     pub(crate) fn step(
-        &self,
-        at: &NormalMotion,
-        turn: &SpinBounds,
-        departure: Option<Departure>,
-        near: Option<(usize, f64)>,
-        most: f64,
-    ) -> Step {
-        each_surface!(self, balls => balls.step(at, turn, departure, near, most), convex => {
-            convex.step(at, turn, departure, most)
-        })
-    }
-
-    /// False where f″ and the bound backward take longer than the steps that they save.
-    pub(crate) fn looks_back(&self) -> bool {
-        each_surface!(self, _balls => true, convex => convex.looks_back())
-    }
-
-    /// When in the time `since` before this one a part can have touched.
-    #[inline(always)]
-    pub(crate) fn backward(
-        &self,
-        part: usize,
-        at: &NormalMotion,
-        turn: &SpinBounds,
-        since: f64,
-    ) -> BackwardBound {
-        each_surface!(self, surface => surface.backward(part, at, turn, since))
-    }
-
-    /// f″ of a part.
-    #[inline(always)]
-    pub(crate) fn acceleration(&self, part: usize, at: &NormalMotion) -> f64 {
-        each_surface!(self, balls => balls.points()[part].acceleration(at), convex => {
-            convex.acceleration(part, at)
-        })
-    }
-
-    /// True if some part but one overlaps, or touches within rounding, and approaches faster than that one.
-    pub(crate) fn another_touches(&self, departure: Departure, at: &NormalMotion) -> bool {
-        each_surface!(self, surface => surface.another_touches(departure, at))
-    }
-}
-
-impl BallTree {
-    /// As [`RigidSurface`]'s.
-    #[inline(always)]
-    fn step(
         &self,
         at: &NormalMotion,
         turn: &SpinBounds,
@@ -219,9 +172,14 @@ impl BallTree {
         found(first.place, first.cost, first.others)
     }
 
-    /// As [`RigidSurface`]'s.
+    /// False where f″ and the bound backward take longer than the steps that they save.
+    pub(crate) fn looks_back(&self) -> bool {
+        true
+    }
+
+    /// When in the time `since` before this one a part can have touched.
     #[inline(always)]
-    fn backward(
+    pub(crate) fn backward(
         &self,
         part: usize,
         at: &NormalMotion,
@@ -242,8 +200,14 @@ impl BallTree {
         BackwardBound::new(gap, before, since)
     }
 
-    /// As [`RigidSurface`]'s.
-    fn another_touches(&self, departure: Departure, at: &NormalMotion) -> bool {
+    /// f″ of a part.
+    #[inline(always)]
+    pub(crate) fn acceleration(&self, part: usize, at: &NormalMotion) -> f64 {
+        self.points()[part].acceleration(at)
+    }
+
+    /// True if some part but one overlaps, or touches within rounding, and approaches faster than that one.
+    pub(crate) fn another_touches(&self, departure: Departure, at: &NormalMotion) -> bool {
         let still = self.points()[departure.part].opening(at).1;
         let exceeds = |least: &Least, limit: f64| least.gap > TOUCHING || least.rate > limit;
         let cost = |part: usize, point: &Point, _: f64| {
@@ -263,6 +227,7 @@ mod tests {
     use super::*;
     use crate::math::Vector;
     use crate::random::pair;
+    use crate::shape::RigidSurface;
 
     fn vector(seed: u64, index: u64) -> Vector {
         let ((x, y), (z, _)) = (pair(seed, 2 * index), pair(seed, 2 * index + 1));
@@ -296,10 +261,7 @@ mod tests {
         let (mut exact, mut alone) = (0, 0);
         for count in [1, 2, 8, 9, 16, 17, 100, 1000, 5000] {
             for seed in 0..40 {
-                let surface = RigidSurface::Balls(balls(seed, count));
-                let RigidSurface::Balls(balls) = &surface else {
-                    unreachable!()
-                };
+                let balls = balls(seed, count);
                 let up = vector(seed, 1_000_000);
                 let up = up / up.norm();
                 let lowest = |point: &Point| point.radius - up.dot(point.place);
@@ -308,6 +270,7 @@ mod tests {
                     .iter()
                     .map(lowest)
                     .fold(f64::NEG_INFINITY, f64::max);
+                let surface = RigidSurface::Balls(balls.clone());
                 assert!((surface.support(up) - support).abs() <= 1e-15);
                 for (height, rate) in [
                     (0.0, -1.0),
@@ -336,7 +299,7 @@ mod tests {
                         .map(length)
                         .fold(f64::INFINITY, f64::min);
                     let near = (seed % 3 == 0).then_some((0, 0.0));
-                    let step = surface.step(&at, turn, None, near, f64::INFINITY);
+                    let step = balls.step(&at, turn, None, near, f64::INFINITY);
                     assert!(step.length <= least && step.length >= ENOUGH * least);
                     let others = balls.points().iter().enumerate();
                     let others = others.filter(|&(part, _)| part != step.part);
@@ -345,10 +308,10 @@ mod tests {
                             .clone()
                             .all(|(_, point)| length(point) >= step.only_until)
                     );
-                    let cut = surface.step(&at, turn, None, near, 0.25 * least);
+                    let cut = balls.step(&at, turn, None, near, 0.25 * least);
                     assert!(cut.length == 0.25 * least && (!cut.closes || least == 0.0));
                     if step.only_until > step.length {
-                        let same = surface.step(
+                        let same = balls.step(
                             &at,
                             turn,
                             None,
@@ -374,7 +337,7 @@ mod tests {
                         let (width, rate) = point.opening(&at);
                         part != step.part && width <= TOUCHING && rate < still
                     });
-                    assert_eq!(surface.another_touches(left, &at), touches);
+                    assert_eq!(balls.another_touches(left, &at), touches);
                 }
             }
         }

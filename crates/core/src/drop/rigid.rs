@@ -278,7 +278,7 @@ impl Pose<Scalar> for RigidPose<'_> {
     }
 
     fn axis(&self) -> Vectors<Scalar, 1> {
-        lane(Vector::new(f64::NAN, f64::NAN, f64::NAN))
+        Vector::new(f64::NAN, f64::NAN, f64::NAN).in_lane()
     }
 
     fn attitude(&self) -> [Lane; 4] {
@@ -287,15 +287,15 @@ impl Pose<Scalar> for RigidPose<'_> {
     }
 
     fn velocities(&self) -> [Vectors<Scalar, 1>; 2] {
-        [self.before, self.after].map(|state| lane(state.velocity))
+        [self.before, self.after].map(|state| state.velocity.in_lane())
     }
 
     fn spin_before(&self) -> Vectors<Scalar, 1> {
-        lane(self.before.attitude.rotate(self.before.spin))
+        self.before.attitude.rotate(self.before.spin).in_lane()
     }
 
     fn spin_after(&self) -> Vectors<Scalar, 1> {
-        lane(self.after.attitude.rotate(self.after.spin))
+        self.after.attitude.rotate(self.after.spin).in_lane()
     }
 }
 
@@ -305,8 +305,8 @@ mod tests {
     use crate::drop::{About, Orientation, Run, Spin};
     use crate::math::Quaternion;
     use crate::random::pair;
-    use crate::shape::evaluations;
     use crate::shape::{AnyBody, Heights, Inertia, Matter, RigidBall, Roughness};
+    use crate::shape::{each_surface, evaluations};
     use crate::{Frictionless, Law, Level, Monitor, Resources};
 
     /// Of R = 10 mm, as in `benchmarks/bodies.py`.
@@ -405,17 +405,18 @@ mod tests {
                 let low = body.surface.support(now.up) - now.height + 0.02 * (width - 0.5);
                 let mut flight = from(low);
                 let now = flight.look(time).at;
-                let part = body
-                    .surface
-                    .step(&now, turn, None, None, f64::INFINITY)
-                    .part;
+                let part = each_surface!(&body.surface, surface => {
+                    surface.step(&now, turn, None, None, f64::INFINITY).part
+                });
                 let mut gap = |time: f64| {
                     let at = flight.look(time).at;
                     at.height + at.up.dot(body.surface.nearest(part, at.up, at.turning))
                 };
-                let backward = body.surface.backward(part, &now, turn, since);
+                let (backward, looks_back) = each_surface!(&body.surface, surface => {
+                    (surface.backward(part, &now, turn, since), surface.looks_back())
+                });
                 assert!((gap(time) - backward.gap.width).abs() < 1e-14, "{name}");
-                if body.surface.looks_back() {
+                if looks_back {
                     let [before, here, after] = [-1e-4, 0.0, 1e-4].map(|s| gap(time + s));
                     let second = (before - 2.0 * here + after) * 1e8;
                     let error = (second - backward.gap.acceleration).abs();

@@ -160,7 +160,7 @@ impl<S: Simd> Elliptic<S> {
         let (zero, unit) = (Pack::splat(simd, 0.0), Pack::splat(simd, 1.0));
         let w = spin.parts();
         let moments = top.moments();
-        let order = top.order();
+        let order = top.order;
         let [low, middle, high] = order;
         let [a, b, c] = [moments[low], moments[middle], moments[high]];
         // Λ² − 2EJ₂.

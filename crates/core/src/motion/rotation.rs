@@ -122,10 +122,10 @@ impl<S: Simd> Rotations<S> {
     pub fn new(top: &Top, attitude: Quaternions<S>, spin: Vectors<S, 1>) -> (Self, Mask<S, 1>) {
         let rests = spin.dot(spin).eq(0.0);
         let mut serves = Mask::splat(rests.simd(), true);
-        let way = match top.symmetry() {
+        let way = match top.symmetry {
             Symmetry::Asymmetric if !rests.all() => {
                 // What does not turn has no such functions.
-                let [low, ..] = top.order();
+                let [low, ..] = top.order;
                 let turning = spin.or(rests, Vectors::splat(rests.simd(), ANY + UNITS[low]));
                 let elliptic;
                 (elliptic, serves) = Elliptic::new(top, attitude, turning);

@@ -53,7 +53,7 @@ pub(crate) struct BodyFrame {
 impl Top {
     /// True if **e**, the principal axis of this number, turns about **Λ** at a constant rate.
     pub(crate) fn precesses(&self, axis: usize) -> bool {
-        match self.symmetry() {
+        match self.symmetry {
             Symmetry::Isotropic => true,
             Symmetry::About(own) => own == axis,
             Symmetry::Asymmetric => false,

@@ -1,7 +1,7 @@
 //! Clumps: unions of balls.
 
-use super::rigid::{CENTRE, Rigid, RigidBall, TENSOR, VolumeMoments};
-use super::union::{ball, union};
+use super::rigid::{CENTRE, Rigid, RigidBall, TENSOR};
+use super::union::{sum, union};
 use super::{BodyKind, Form, check_density};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
@@ -65,10 +65,7 @@ impl Rigid {
         check(balls)?;
         let moments = match matter {
             Matter::Union => union(balls)?,
-            Matter::Sum => balls
-                .iter()
-                .map(ball)
-                .fold(VolumeMoments::default(), VolumeMoments::and),
+            Matter::Sum => sum(balls),
         };
         Self::of_balls(moments.inertia(density), "spheres", balls.iter().copied())
     }

@@ -5,7 +5,7 @@ use super::rigid::{CENTRE, TENSOR};
 use super::{BodyKind, Form, check_length};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Kind, Parameter};
-use crate::math::Vector;
+use crate::math::{UNITS, Vector};
 
 /// Its entry in the table of bodies.
 pub(super) const DIE: BodyKind = BodyKind::Rigid(Kind {
@@ -45,6 +45,7 @@ fn cyclic(x: f64, y: f64) -> impl Iterator<Item = Vector> {
 /// Vertices about the centre, and triangles of them.
 fn solid(given: &[Argument<'_>]) -> Result<Form, Error> {
     let cube = || corners([2.0; 3]);
+    let (centre, [x, y, z]) = (Vector::default(), UNITS);
     let (edge, points, triangles): (f64, Vec<Vector>, &str) = match given.whole(0) {
         4 => (
             8.0_f64.sqrt(),
@@ -61,16 +62,7 @@ fn solid(given: &[Argument<'_>]) -> Result<Form, Error> {
         ),
         8 => (
             2.0_f64.sqrt(),
-            [
-                [-1, 0, 0],
-                [0, -1, 0],
-                [0, 0, -1],
-                [0, 0, 1],
-                [0, 1, 0],
-                [1, 0, 0],
-            ]
-            .map(|[x, y, z]: [i8; 3]| Vector::new(x.into(), y.into(), z.into()))
-            .into(),
+            vec![centre - x, centre - y, centre - z, z, y, x],
             "210 215 310 315 425 420 435 430",
         ),
         12 => (

@@ -1,8 +1,7 @@
 //! Eggs: two spherical caps, joined by an arc that is tangent to both.
 
-use super::revolved::ProfileArc;
 use super::rigid::{CENTRE, Rigid, TENSOR};
-use super::surface::Place;
+use super::surface::{Band, Place};
 use super::{BodyKind, Form};
 use crate::Error;
 use crate::describe::{Arguments, Kind, Parameter};
@@ -83,21 +82,9 @@ impl Rigid {
         let upper = towards(caps[0], [1.0, 0.0]);
         let lower = towards(caps[1], [-1.0, 0.0]);
         let outline = [
-            ProfileArc {
-                centre: caps[0],
-                radius: tip,
-                ends: [[1.0, 0.0], upper],
-            },
-            ProfileArc {
-                centre,
-                radius,
-                ends: [upper, lower],
-            },
-            ProfileArc {
-                centre: caps[1],
-                radius: blunt,
-                ends: [lower, [-1.0, 0.0]],
-            },
+            Band::new(caps[0], tip, [[1.0, 0.0], upper]),
+            Band::new(centre, radius, [upper, lower]),
+            Band::new(caps[1], blunt, [lower, [-1.0, 0.0]]),
         ];
         Self::of_outline(&outline, &outline, density)
     }

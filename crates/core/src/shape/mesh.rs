@@ -1,7 +1,7 @@
 //! Solids within closed surfaces of triangles.
 
 use super::pieces::Extent;
-use super::polyhedron::{faces, solid, vertex};
+use super::polyhedron::{check, faces, solid, vertex};
 use super::rigid::{CENTRE, Rigid, TENSOR, vectors};
 use super::{BodyKind, Form};
 use crate::Error;
@@ -53,14 +53,7 @@ impl Rigid {
             value: triangles.len().into(),
             allowed,
         };
-        if triangles.as_flattened().iter().any(|&i| i >= points.len()) {
-            let last = points.len().saturating_sub(1);
-            let allowed = format!("triples of numbers of the vertices, from 0 to {last}");
-            return Err(refused(allowed));
-        }
-        for x in points.iter().flat_map(|point| [point.x, point.y, point.z]) {
-            Error::unless(x.is_finite(), "vertices", x, "finite (m)")?;
-        }
+        check("vertices", points, triangles)?;
         if let Some(problem) = open_edge(points, triangles) {
             return Err(refused(problem));
         }

@@ -57,6 +57,7 @@ impl Rigid {
         triangles: &[[usize; 3]],
         density: f64,
     ) -> Result<Self, Error> {
+        check("points", points, triangles)?;
         let inertia = solid(points, triangles, f64::abs, density)?;
         let vertices: Vec<_> = points.iter().map(vertex).collect();
         Ok(Self::of_balls(inertia, "points", vertices.into_iter())?.with_extent(Extent::Hull))
@@ -70,6 +71,26 @@ pub(super) fn vertex(&centre: &Vector) -> RigidBall {
     }
 }
 
+/// Refuses points of this name that are no numbers, and triangles of others.
+pub(super) fn check(
+    name: &'static str,
+    points: &[Vector],
+    triangles: &[[usize; 3]],
+) -> Result<(), Error> {
+    if triangles.as_flattened().iter().any(|&i| i >= points.len()) {
+        let last = points.len().saturating_sub(1);
+        return Err(Error::Parameter {
+            name: "triangles",
+            value: triangles.len().into(),
+            allowed: format!("triples of numbers of the {name}, from 0 to {last}"),
+        });
+    }
+    for x in points.iter().flat_map(|point| [point.x, point.y, point.z]) {
+        Error::unless(x.is_finite(), name, x, "finite (m)")?;
+    }
+    Ok(())
+}
+
 /// The sum of the tetrahedra that triangles make with a point among them. `counted` is how their signed volumes count.
 pub(super) fn solid(
     points: &[Vector],
@@ -78,11 +99,6 @@ pub(super) fn solid(
     density: f64,
 ) -> Result<Inertia, Error> {
     check_density(density)?;
-    for x in points.iter().flat_map(|point| [point.x, point.y, point.z]) {
-        Error::unless(x.is_finite(), "points", x, "finite (m)")?;
-    }
-    let known = triangles.as_flattened().iter().all(|&i| i < points.len());
-    Error::unless(known, "triangles", triangles.len(), "numbers of the points")?;
     let mut vertices: Vec<usize> = triangles.as_flattened().to_vec();
     vertices.sort_unstable();
     vertices.dedup();

@@ -56,32 +56,6 @@ fn check_outline(profile: &[Place]) -> Result<(), Error> {
     Ok(())
 }
 
-/// An arc of an outline, in m: its centre, its radius, and the directions from its centre to its beginning and its end.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct ProfileArc {
-    pub centre: Place,
-    pub radius: f64,
-    pub ends: [Place; 2],
-}
-
-impl ProfileArc {
-    fn point(centre: Place) -> Self {
-        Self {
-            centre,
-            radius: 0.0,
-            ends: [[1.0, 0.0], [-1.0, 0.0]],
-        }
-    }
-
-    fn end(&self, number: usize) -> Place {
-        let [a, b] = self.ends[number];
-        [
-            self.radius.mul_add(a, self.centre[0]),
-            self.radius.mul_add(b, self.centre[1]),
-        ]
-    }
-}
-
 /// The integrals of r²/2, z r²/2, z² r²/2 and r⁴/4 over z.
 type ProfileIntegrals = [f64; 4];
 
@@ -97,7 +71,7 @@ impl Rigid {
             Error::unless(z.is_finite(), "profile", z, allowed)?;
             Error::unless(r.is_finite() && r >= 0.0, "profile", r, allowed)?;
         }
-        let outline: Vec<_> = profile.iter().copied().map(ProfileArc::point).collect();
+        let outline: Vec<_> = profile.iter().copied().map(Band::rim).collect();
         Self::of_outline(&outline, &hull(profile), density)
     }
 
@@ -117,8 +91,8 @@ impl Rigid {
 
     /// The solid that an outline makes, of which only these arcs can touch.
     pub(super) fn of_outline(
-        outline: &[ProfileArc],
-        touching: &[ProfileArc],
+        outline: &[Band],
+        touching: &[Band],
         density: f64,
     ) -> Result<Self, Error> {
         check_density(density)?;
@@ -136,7 +110,7 @@ impl Rigid {
             tensor: Symmetric::diagonal([transverse, transverse, axial]),
         };
         let band = |scale: f64| {
-            move |arc: &ProfileArc| {
+            move |arc: &Band| {
                 let [z, r] = arc.centre;
                 Band::new(
                     [(z - centre) / scale, r / scale],
@@ -161,7 +135,7 @@ impl Rigid {
 }
 
 /// The points of the convex hull of a profile and its mirror image that are not on the other side, from the pole at +z.
-fn hull(profile: &[Place]) -> Vec<ProfileArc> {
+fn hull(profile: &[Place]) -> Vec<Band> {
     let mut points = profile.to_vec();
     points.sort_by(|a, b| b[0].total_cmp(&a[0]).then(b[1].total_cmp(&a[1])));
     let mut chain: Vec<Place> = Vec::new();
@@ -178,11 +152,11 @@ fn hull(profile: &[Place]) -> Vec<ProfileArc> {
             chain.push(point);
         }
     }
-    chain.into_iter().map(ProfileArc::point).collect()
+    chain.into_iter().map(Band::rim).collect()
 }
 
 /// Those of the solid that an outline makes, with z from `origin`.
-fn sums(outline: &[ProfileArc], origin: f64) -> ProfileIntegrals {
+fn sums(outline: &[Band], origin: f64) -> ProfileIntegrals {
     let mut sums = [0.0; 4];
     let mut add = |parts: ProfileIntegrals| {
         for (sum, part) in sums.iter_mut().zip(parts) {

@@ -86,24 +86,16 @@ impl VolumeMoments {
         let c = self.first / self.content;
         let m = self.content;
         let central = Self::about(-m, c, self.second).second;
-        let Symmetric {
-            xx,
-            yy,
-            zz,
-            xy,
-            xz,
-            yz,
-        } = central;
         Inertia {
             mass: density * m,
             centre: c,
             tensor: Symmetric {
-                xx: density * (yy + zz),
-                yy: density * (zz + xx),
-                zz: density * (xx + yy),
-                xy: -density * xy,
-                xz: -density * xz,
-                yz: -density * yz,
+                xx: density * (central.yy + central.zz),
+                yy: density * (central.zz + central.xx),
+                zz: density * (central.xx + central.yy),
+                xy: -density * central.xy,
+                xz: -density * central.xz,
+                yz: -density * central.yz,
             },
         }
     }

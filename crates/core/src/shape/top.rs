@@ -12,11 +12,11 @@ pub struct Top {
     moments: [f64; 3],
     /// [`asymmetry`], at most 1.
     pub(crate) asymmetry: f64,
-    symmetry: Symmetry,
+    pub(crate) symmetry: Symmetry,
     /// (J₂ − J₃)/J₁ and so on: by Euler's equations ω̇₁ is the first of them times ω₂ω₃.
     pub(crate) couplings: [f64; 3],
     /// The axes from the least moment to the largest.
-    order: [usize; 3],
+    pub(crate) order: [usize; 3],
 }
 
 /// The moments that are equal.
@@ -53,23 +53,15 @@ impl Top {
         let (moments, symmetry) = without_rounding(moments);
         let asymmetry = asymmetry(moments).min(1.0);
         let [a, b, c] = moments;
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
         Ok(Self {
             moments,
             asymmetry,
             symmetry,
             couplings: [(b - c) / a, (c - a) / b, (a - b) / c],
-            order: sorted(moments),
+            order,
         })
-    }
-
-    #[inline(always)]
-    pub(crate) fn symmetry(&self) -> Symmetry {
-        self.symmetry
-    }
-
-    #[inline(always)]
-    pub(crate) fn order(&self) -> [usize; 3] {
-        self.order
     }
 
     /// The principal moments.
@@ -84,12 +76,6 @@ impl Top {
         let [a, b, c] = self.moments;
         a * spin.x * spin.x + b * spin.y * spin.y + c * spin.z * spin.z
     }
-}
-
-fn sorted(moments: [f64; 3]) -> [usize; 3] {
-    let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
-    order
 }
 
 /// The moments with those made equal that differ by rounding alone, and which these are.

@@ -46,31 +46,18 @@ pub(crate) struct Point {
     pub number: u32,
 }
 
-/// Bounds of the gaps of the balls of a node.
-struct Node {
-    /// **c** and c.
-    middle: [f32; 3],
-    far: f32,
-    /// The largest |**p** − **c**|, b and r.
-    spread: f32,
-    side: f32,
-    radius: f32,
-    /// The largest a + r, or t.
-    top: f32,
-    /// True for a paraboloid.
-    curved: bool,
-}
-
-/// The four quarters of a node, side by side.
+/// Bounds of the gaps of the balls of the four quarters of a node, side by side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[repr(align(64))]
 struct Quarters {
+    /// **c** and c, the latter negative for a paraboloid.
     middle: [[f32; 4]; 3],
-    /// Negative for a paraboloid.
     far: [f32; 4],
+    /// The largest |**p** − **c**|, b and r.
     spread: [f32; 4],
     side: [f32; 4],
     radius: [f32; 4],
+    /// The largest a + r, or t.
     top: [f32; 4],
 }
 
@@ -129,8 +116,9 @@ fn above(x: f64) -> f32 {
     (x + ROUNDED * x.abs() + 1e-14) as f32
 }
 
-impl Node {
-    fn new(points: &[Point]) -> Self {
+impl Quarters {
+    /// Bounds the balls of quarter k.
+    fn bound(&mut self, k: usize, points: &[Point]) {
         let [low, high] = sides(points);
         let middle = [0, 1, 2].map(|i| (0.5 * (low[i] + high[i])) as f32);
         let [x, y, z] = middle.map(f64::from);
@@ -152,38 +140,19 @@ impl Node {
             crown = crown.max(along + point.radius + bulge(across));
         }
         let curved = crown < top + 0.5 * bulge(side);
-        Self {
-            middle,
-            far,
-            spread: above(spread),
-            side: above(side),
-            radius: above(radius),
-            top: above(if curved { crown } else { top }),
-            curved,
+        for (to, from) in self.middle.iter_mut().zip(middle) {
+            to[k] = from;
         }
-    }
-}
-
-impl Quarters {
-    fn new(nodes: [Node; 4]) -> Self {
-        let each = |of: fn(&Node) -> f32| nodes.each_ref().map(of);
-        Self {
-            middle: [
-                each(|node| node.middle[0]),
-                each(|node| node.middle[1]),
-                each(|node| node.middle[2]),
-            ],
-            far: each(|node| if node.curved { -node.far } else { node.far }),
-            spread: each(|node| node.spread),
-            side: each(|node| node.side),
-            radius: each(|node| node.radius),
-            top: each(|node| node.top),
-        }
+        self.far[k] = if curved { -far } else { far };
+        self.spread[k] = above(spread);
+        self.side[k] = above(side);
+        self.radius[k] = above(radius);
+        self.top[k] = above(if curved { crown } else { top });
     }
 
-    /// The bounds for the balls of each, where |**n**′| is `turning`.
+    /// The bounds for the balls of each, as of [`Least`], where |**n**′| is `turning`.
     #[inline(always)]
-    fn least(&self, at: &NormalMotion, turning: f64) -> FourBounds {
+    fn least(&self, at: &NormalMotion, turning: f64) -> [Four; 3] {
         let (n, w) = (at.up, at.turning);
         let [x, y, z] = [0, 1, 2].map(|i| four(&self.middle[i]));
         let signed = four(&self.far);
@@ -202,23 +171,16 @@ impl Quarters {
         let lower = surface + ((1.0 + COSINE) - cosine) * radius;
         let round = spread + radius;
         let below = across.lt(0.0).select(round.min(lower), round);
-        FourBounds {
-            gap: across - below + at.height,
-            rate: w.x * x + w.y * y + w.z * z - turning * spread + at.rate,
-            reach: far + spread,
-        }
+        [
+            across - below + at.height,
+            w.x * x + w.y * y + w.z * z - turning * spread + at.rate,
+            far + spread,
+        ]
     }
 }
 
 /// Four numbers side by side.
 type Four = Pack<Scalar, 4>;
-
-/// Bounds of the balls of four nodes.
-struct FourBounds {
-    gap: Four,
-    rate: Four,
-    reach: Four,
-}
 
 #[inline(always)]
 fn four(numbers: &[f32; 4]) -> Four {
@@ -306,8 +268,9 @@ impl BallTree {
                 let (front, back) = divide(&mut tree[low..high], two);
                 let (a, b) = divide(front, one);
                 let (c, d) = divide(back, three - two);
-                quarters[first(level) + i] =
-                    Quarters::new([a, b, c, d].map(|part| Node::new(part)));
+                for (k, part) in [a, b, c, d].into_iter().enumerate() {
+                    quarters[first(level) + i].bound(k, part);
+                }
             }
         }
         Ok(Self {
@@ -383,8 +346,7 @@ impl BallTree {
                 count
             };
             for k in 0..4 {
-                let [gap, rate, reach] =
-                    [&nodes.gap, &nodes.rate, &nodes.reach].map(|four| four.as_slice()[k]);
+                let [gap, rate, reach] = nodes.each_ref().map(|four| four.as_slice()[k]);
                 let node = Least { gap, rate, reach };
                 if best.leaves_out(&node, effort, &exceeds) {
                     continue;

@@ -7,8 +7,14 @@ use crate::simd::elementary::{angle, sincos};
 use crate::threads::go_on;
 use std::f64::consts::PI;
 
+/// Those of all balls, each by itself.
+pub(super) fn sum(balls: &[RigidBall]) -> VolumeMoments {
+    let each = balls.iter().map(ball);
+    each.fold(VolumeMoments::default(), VolumeMoments::and)
+}
+
 /// A whole ball.
-pub(super) fn ball(ball: &RigidBall) -> VolumeMoments {
+fn ball(ball: &RigidBall) -> VolumeMoments {
     let r = ball.radius;
     let volume = 4.0 / 3.0 * PI * (r * r * r);
     let second = 0.2 * volume * (r * r);
@@ -44,10 +50,7 @@ struct Cap {
 /// # Errors
 /// [`Error::Cancelled`].
 pub(super) fn union(balls: &[RigidBall]) -> Result<VolumeMoments, Error> {
-    let all = balls
-        .iter()
-        .map(ball)
-        .fold(VolumeMoments::default(), VolumeMoments::and);
+    let all = sum(balls);
     let origin = all.first / all.content;
     let mut sums = [0.0; 10];
     for (i, own) in balls.iter().enumerate() {

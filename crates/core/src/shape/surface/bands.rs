@@ -1,15 +1,15 @@
 //! Surfaces of convex bodies of revolution: bands about the third axis.
 
 use super::support::{Length, NormalMotion, Support};
-use super::{ConvexSurface, Piece};
+use super::{Convex, ConvexSurface, Piece, RigidSurface};
 use crate::math::flat::norm;
 use crate::math::{Quaternion, Vector};
 
 /// A point (z, r) of a half-plane through the axis.
 pub(crate) type Place = [f64; 2];
 
-/// The surface that an arc of the profile makes as it turns about the axis, in units of R from the centre of mass: a band of a torus, the rim
-/// of an edge or face where its radius is 0, a cap where its centre is on the axis.
+/// An arc of a profile, and the surface that it makes as it turns about the axis: a band of a torus, the rim of an edge or face where its radius
+/// is 0, a cap where its centre is on the axis. Of a body in units of R from the centre of mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Band {
     /// The centre of the arc; its r is negative where the arc is wider than the body.
@@ -45,6 +45,20 @@ impl Band {
             band.reach = band.reach.max(norm([z + radius * a, r + radius * b]));
         }
         band
+    }
+
+    /// A corner of the profile.
+    pub fn rim(place: Place) -> Self {
+        Self::new(place, 0.0, [[1.0, 0.0], [-1.0, 0.0]])
+    }
+
+    /// The first or the last point of the arc.
+    pub fn end(&self, number: usize) -> Place {
+        let [a, b] = self.ends[number];
+        [
+            self.radius.mul_add(a, self.centre[0]),
+            self.radius.mul_add(b, self.centre[1]),
+        ]
     }
 
     /// The same in units of `part` of the present one, in a body whose centre of mass is this far from the present one.
@@ -103,6 +117,8 @@ pub(crate) struct Bands(pub Vec<Band>);
 impl ConvexSurface for Bands {
     type Along<'a> = BandSupport<'a>;
 
+    const OF: fn(Convex<Self>) -> RigidSurface = RigidSurface::Bands;
+
     #[inline(always)]
     fn parts(&self) -> usize {
         self.0.len()
@@ -129,7 +145,21 @@ impl ConvexSurface for Bands {
 
     #[inline(always)]
     fn along<'a>(&'a self, part: usize, at: &'a NormalMotion) -> BandSupport<'a> {
-        BandSupport::new(&self.0[part], at)
+        let band = &self.0[part];
+        let normal = [at.up, at.turning, at.bending];
+        let along = normal.map(|v| -v.z);
+        let across = Length::new(normal.map(|v| Vector::new(v.x, v.y, 0.0)));
+        let weights = band.weights(along[0], across.size);
+        let [z, r, radius] = weights;
+        BandSupport {
+            band,
+            size: z * along[0] + r * across.size + radius,
+            slope: z * along[1] + r * across.slope,
+            along,
+            across,
+            whole: Length::new(normal),
+            weights,
+        }
     }
 
     fn scaled(&self, part: f64, shift: f64) -> Self {
@@ -159,26 +189,6 @@ pub(crate) struct BandSupport<'a> {
     weights: [f64; 3],
     size: f64,
     slope: f64,
-}
-
-impl<'a> BandSupport<'a> {
-    #[inline(always)]
-    fn new(band: &'a Band, at: &NormalMotion) -> Self {
-        let normal = [at.up, at.turning, at.bending];
-        let along = normal.map(|v| -v.z);
-        let across = Length::new(normal.map(|v| Vector::new(v.x, v.y, 0.0)));
-        let weights = band.weights(along[0], across.size);
-        let [z, r, radius] = weights;
-        Self {
-            band,
-            size: z * along[0] + r * across.size + radius,
-            slope: z * along[1] + r * across.slope,
-            along,
-            across,
-            whole: Length::new(normal),
-            weights,
-        }
-    }
 }
 
 impl Support for BandSupport<'_> {

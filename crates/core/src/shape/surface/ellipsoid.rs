@@ -1,7 +1,7 @@
 //! The surface of an ellipsoid.
 
 use super::support::{Length, NormalMotion};
-use super::{ConvexSurface, Piece};
+use super::{Convex, ConvexSurface, Piece, RigidSurface};
 use crate::math::{Quaternion, Vector};
 
 /// An ellipsoid about the origin with these semi-axes.
@@ -19,6 +19,8 @@ impl EllipsoidSurface {
 
 impl ConvexSurface for EllipsoidSurface {
     type Along<'a> = Length;
+
+    const OF: fn(Convex<Self>) -> RigidSurface = RigidSurface::Ellipsoid;
 
     fn inner(&self) -> f64 {
         let [a, b, c] = self.0;

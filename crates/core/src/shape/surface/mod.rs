@@ -23,6 +23,9 @@ pub(crate) trait ConvexSurface: Sized {
     where
         Self: 'a;
 
+    /// The surface of a body that it is.
+    const OF: fn(Convex<Self>) -> RigidSurface;
+
     /// False where f″ and the bound backward take longer than the steps that they save.
     const LOOKS_BACK: bool = true;
 
@@ -53,10 +56,8 @@ pub(crate) trait ConvexSurface: Sized {
     /// The same in units of `part` of the present one, in a body whose centre of mass is this far from the present one.
     fn scaled(&self, part: f64, shift: f64) -> Self;
 
-    /// With what it touches another body, with these axes and this centre, and in this unit.
-    fn piece(&self, _axes: Quaternion, _centre: Vector, _unit: f64) -> Option<Piece> {
-        None
-    }
+    /// With what it touches another body, with these axes and this centre, and in this unit, where that is known.
+    fn piece(&self, axes: Quaternion, centre: Vector, unit: f64) -> Option<Piece>;
 }
 
 /// The surface that can touch.
@@ -85,21 +86,9 @@ macro_rules! each_surface {
 }
 pub(crate) use each_surface;
 
-impl From<Convex<EllipsoidSurface>> for RigidSurface {
-    fn from(surface: Convex<EllipsoidSurface>) -> Self {
-        Self::Ellipsoid(surface)
-    }
-}
-
-impl From<Convex<Superellipsoid>> for RigidSurface {
-    fn from(surface: Convex<Superellipsoid>) -> Self {
-        Self::Superellipsoid(surface)
-    }
-}
-
-impl From<Convex<Bands>> for RigidSurface {
-    fn from(surface: Convex<Bands>) -> Self {
-        Self::Bands(surface)
+impl<S: ConvexSurface> From<Convex<S>> for RigidSurface {
+    fn from(surface: Convex<S>) -> Self {
+        S::OF(surface)
     }
 }
 

@@ -6,7 +6,7 @@
 //! h(**u**) = (W^p₁ + |cu_z|^p₁)^(1/p₁), W = (|au_x|^p₂ + |bu_y|^p₂)^(1/p₂). Its gradient is the place that touches.
 
 use super::support::{NormalMotion, Support};
-use super::{ConvexSurface, Piece};
+use super::{Convex, ConvexSurface, Piece, RigidSurface};
 use crate::math::{Quaternion, Vector};
 use crate::simd::elementary::{exp_m1_in_lanes, ln};
 use crate::simd::one;
@@ -93,11 +93,6 @@ impl Superellipsoid {
         (size, place)
     }
 
-    /// h″ along a curve of directions **u** with **u**′ and **u**″; infinite where the surface is flat.
-    fn bent(&self, u: Vector, turning: Vector, bending: Vector) -> f64 {
-        self.bends(u, [turning; 2])[0] + self.farthest(u).1.dot(bending)
-    }
-
     /// The second derivatives of h(**u**) along two directions, and the mixed one in between.
     pub fn bends(&self, u: Vector, [v, w]: [Vector; 2]) -> [f64; 3] {
         let ([a, b, c], [p, q]) = (self.semi_axes, self.dual);
@@ -134,6 +129,7 @@ impl Superellipsoid {
 impl ConvexSurface for Superellipsoid {
     type Along<'a> = SuperellipsoidSupport<'a>;
 
+    const OF: fn(Convex<Self>) -> RigidSurface = RigidSurface::Superellipsoid;
     const LOOKS_BACK: bool = false;
 
     /// The surface is outside of the ellipsoid, or of the octahedron, with the same semi-axes.
@@ -197,7 +193,8 @@ impl Support for SuperellipsoidSupport<'_> {
 
     #[inline(always)]
     fn second(&self) -> f64 {
-        self.body.bent(self.at.up, self.at.turning, self.at.bending)
+        let Self { body, at, .. } = self;
+        body.bends(at.up, [at.turning; 2])[0] + body.farthest(at.up).1.dot(at.bending)
     }
 
     #[inline(always)]
