@@ -6,6 +6,7 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.bodies import BODIES, Body
 from restitution.experiment.budget import _sources
@@ -13,7 +14,7 @@ from restitution.experiment.budget._near_round import near_round
 from restitution.experiment.budget._results import ErrorBudget
 from restitution.experiment.budget._rough import roughness as rough
 from restitution.experiment.budget._sources import Source
-from restitution.experiment.budget.experiment import Array, Experiment, Setting, mean_radius
+from restitution.experiment.budget.experiment import Experiment, Setting, mean_radius
 from restitution.experiment.flight.contact import ContactTime, contact_of
 from restitution.experiment.flight.drag import Drag
 from restitution.experiment.flight.setting import QUARTZ

@@ -19,8 +19,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution.bodies import Body, Dumbbell, LoadedSphere, Spheroid
-from restitution.experiment.budget.experiment import Array, Experiment, coupling
+from restitution.experiment.budget.experiment import Experiment, coupling
 
 
 @dataclass(frozen=True)

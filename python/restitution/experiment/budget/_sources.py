@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.parameters import ParameterError, Problem, in_terms_of
 from restitution.bodies import Body
 from restitution.drop.energy import reported_elsewhere
 from restitution.drop.release import RandomSpin
 from restitution.drop.simulate import simulate
-from restitution.experiment.budget.experiment import Array, Experiment, at, mean_radius
+from restitution.experiment.budget.experiment import Experiment, at, mean_radius
 from restitution.experiment.flight.contact import ContactTime
 from restitution.experiment.flight.drag import Drag, fall, launched
 from restitution.laws import Law
@@ -170,7 +170,7 @@ def _source(errors: Array) -> Source:
 
 
 @reported_elsewhere()
-def simulated(experiment: Experiment, body: Body, *, spin: bool, tilt: bool) -> npt.NDArray[np.float64]:
+def simulated(experiment: Experiment, body: Body, *, spin: bool, tilt: bool) -> Array:
     """Return errors of ε of many drops by times alone, shape (m, n); NaN for those that are left out.
 
     Every law of the experiment has as many drops, m/laws, at the same angles.

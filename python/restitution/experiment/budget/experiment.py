@@ -7,10 +7,10 @@ from numbers import Real
 from typing import Annotated, Self
 
 import numpy as np
-import numpy.typing as npt
 from pydantic import Field, model_validator
 from scipy.optimize import least_squares
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.parameters import (
     Number,
     ParameterError,
@@ -33,8 +33,6 @@ from restitution.laws import (
     Viscoelastic,
     check_steady,
 )
-
-Array = npt.NDArray[np.float64]
 
 _MOST = 1000
 """Of coefficients, which have a covariance each with each: so many that no ball reaches them."""

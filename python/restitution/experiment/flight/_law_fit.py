@@ -9,12 +9,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import chi2
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.arrays import check_each, reals
 from restitution._internal.datasets import Content
 from restitution._internal.text import table, with_error
 from restitution.experiment.flight.laws import LawOfSpeed, by_parameters
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,13 +11,12 @@ import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from scipy.optimize import least_squares, minimize
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.parameters import ParameterError, Problem
 from restitution.experiment.flight._law_fit import LawFit
 from restitution.experiment.flight.chain import COMMON, Chain, Measured, chain
 from restitution.experiment.flight.laws import LawOfSpeed, by_parameters, by_speed
 from restitution.experiment.flight.series import USUAL_BETWEEN
-
-Array = npt.NDArray[np.float64]
 
 _REFUTED = 16.0
 """χ² for each coefficient from which a law is not fitted further."""

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.arrays import flag
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.experiment.flight.chain import chain, measured
@@ -16,8 +17,6 @@ from restitution.experiment.flight.contact import ContactTime, contact_of
 from restitution.experiment.flight.drag import Drag
 from restitution.experiment.flight.setting import QUARTZ, Drop, Errors
 from restitution.experiment.flight.times import checked
-
-Array = npt.NDArray[np.float64]
 
 
 def restitution(

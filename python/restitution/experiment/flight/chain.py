@@ -3,17 +3,15 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.parameters import ParameterError, Problem
 from restitution.drop.recorded import check_successive
 from restitution.experiment.flight.contact import ContactTime, delays
 from restitution.experiment.flight.drag import Drag, fall, speeds
 from restitution.experiment.flight.setting import setting_of
 from restitution.experiment.flight.times import check_series
-
-Array = npt.NDArray[np.float64]
 
 COMMON = 5
 """Measured once: g, the height of the drop, the terminal velocity, the contact time; and the clock."""

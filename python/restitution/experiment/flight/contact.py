@@ -4,14 +4,12 @@ import math
 from typing import Annotated
 
 import numpy as np
-import numpy.typing as npt
 from pydantic import Field
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.arrays import real
 from restitution._internal.parameters import Number, ParameterError, Parameters, wrong
 from restitution.experiment.flight.times import LARGEST, LEAST
-
-Array = npt.NDArray[np.float64]
 
 _SOFTEST = 2e9
 """Reduced modulus in Pa of a hard plastic on a hard plate, softer than which is only rubber."""

@@ -4,13 +4,11 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from pydantic import Field
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.parameters import Number, Parameters
 from restitution.experiment.flight.times import LARGEST, LEAST
-
-Array = npt.NDArray[np.float64]
 
 
 class Drag(Parameters):

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.laws import Plastic, Viscoelastic
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

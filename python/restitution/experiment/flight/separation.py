@@ -4,13 +4,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.text import digits, with_error
 from restitution.experiment.flight._problem import joined
 from restitution.experiment.flight.chain import Measured
-
-Array = npt.NDArray[np.float64]
 
 _DECIDED = 2.71
 """Twice the logarithm of a ratio of likelihoods that a variance of zero exceeds in 5 of 100 cases."""

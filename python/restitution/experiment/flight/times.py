@@ -7,11 +7,10 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.arrays import reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.drop.recorded import check_successive, check_variables
-
-Array = npt.NDArray[np.float64]
 
 FLAGS = ("good", "doubtful", "missed", "doubled")
 """Flags of an impact; the number of each is its place in this tuple."""

@@ -12,14 +12,12 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import logsumexp, ndtr
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution.experiment.flight.series import USUAL_BETWEEN
 from restitution.experiment.inference._likelihood import IMPOSSIBLE, Density
 from restitution.experiment.inference._series import Series
-
-Array = npt.NDArray[np.float64]
 
 
 def usual_between(series: Sequence[Series]) -> float:

@@ -3,15 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from restitution._internal.parameters import ParameterError, Problem
 from restitution.bodies import Body, Form, from_roundness
 from restitution.experiment.budget.experiment import STICKS, coupling, law_of_speed
 from restitution.experiment.flight.laws import LawOfSpeed
 from restitution.laws import Coulomb, Frictionless, Law, Plastic, Tabulated, Viscoelastic, check_steady
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,9 @@
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution.experiment.inference._series import Drops
-
-Array = npt.NDArray[np.float64]
 
 _FEWEST = 50
 """Simulated series that a density needs; where fewer could be measured it is taken to be 0."""

@@ -7,11 +7,11 @@ from itertools import product
 from typing import Annotated, Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from pydantic import Field
 
 from restitution import flight
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.arrays import pair
 from restitution._internal.parameters import (
     Allowed,
@@ -31,8 +31,6 @@ from restitution.experiment.inference._series import NEEDED, Series, check_from_
 from restitution.experiment.inference._table import Table, table
 from restitution.experiment.inference._verdict import agreeing, answer, disagreement, judge, sentence
 from restitution.laws import Law, Material
-
-Array = npt.NDArray[np.float64]
 
 _SHAPES, _SCATTERS, _FRICTIONS = 8, 3, 6
 """Values of L/R and of the scatter of ε_n in a decade, and values of friction."""

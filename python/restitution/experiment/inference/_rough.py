@@ -14,13 +14,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import Akima1DInterpolator
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution.experiment.flight.laws import LawOfSpeed
 from restitution.experiment.inference._table import Table
-
-Array = npt.NDArray[np.float64]
 
 PER_SHAPE = 1.0 / (8.0 * np.sqrt(2.0))
 """Mean height over R of asperities that make ε scatter as a ball of two lobes does, over (L/R)²."""

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.arrays import check_each
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution._internal.resources import check_size
@@ -20,8 +21,6 @@ from restitution.experiment.flight.contact import delays
 from restitution.experiment.flight.laws import LawOfSpeed, by_parameters
 from restitution.experiment.flight.times import LARGEST
 from restitution.laws import Law
-
-Array = npt.NDArray[np.float64]
 
 _FEWEST = 5
 NUMBERS = 6

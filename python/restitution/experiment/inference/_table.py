@@ -8,17 +8,15 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import Akima1DInterpolator, RegularGridInterpolator
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.parameters import ParameterError, Problem
 from restitution.experiment.inference._drops import averaged, scatters_between, together, usual_between
 from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._likelihood import Density
 from restitution.experiment.inference._series import Series
-
-Array = npt.NDArray[np.float64]
 
 _GRID = 61
 """Values of the parameter of ε_n."""

@@ -5,13 +5,12 @@ from collections.abc import Mapping
 from typing import Literal, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.text import digits
 from restitution.experiment.budget.experiment import HEIGHT
 from restitution.experiment.inference._table import Table
 
-Array = npt.NDArray[np.float64]
 Surface = Literal["shape", "roughness", "surface"]
 Cause = Surface | Literal["material", "both", "neither", "undecided"]
 

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from scipy.stats import chi2
 
 from restitution import flight
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.text import digits
 from restitution.experiment.budget import ErrorBudget
 
@@ -92,7 +92,7 @@ def compared(
                 yield Compared(f"the error of the {words}", float(error), float(low), stated, degrees)
 
 
-def _root(errors: xr.DataArray) -> npt.NDArray[np.float64]:
+def _root(errors: xr.DataArray) -> Array:
     """Return the root of the sum of squares over sources."""
     return np.asarray(np.sqrt((errors**2).sum("source")))
 

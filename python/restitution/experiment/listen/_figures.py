@@ -1,7 +1,6 @@
 """Pictures of a recording: the waveform with its impacts, and close-ups of onsets."""
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -9,8 +8,6 @@ from restitution.experiment.flight.times import DOUBLED, DOUBTFUL, FLAGS, GOOD
 from restitution.experiment.listen._analysis import Recording
 from restitution.experiment.sound.load import load
 from restitution.figures.style import COLORS, PAGE, panels, styled
-
-Array = npt.NDArray[np.float64]
 
 _MARKS = {GOOD: COLORS[0], DOUBTFUL: COLORS[1], DOUBLED: COLORS[3]}
 _COLUMNS = 1400

@@ -4,11 +4,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from scipy.special import expit
 
 from restitution import flight
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, TooLargeError
 from restitution._internal.text import digits
@@ -138,9 +138,7 @@ def _material(draws: xr.DataTree | None) -> float:
     return float(draws["posterior"].to_dataset().scatter.median())
 
 
-def _law(
-    fits: tuple[flight.LawFit, ...], speed: npt.NDArray[np.float64]
-) -> tuple[Frictionless, float] | None:
+def _law(fits: tuple[flight.LawFit, ...], speed: Array) -> tuple[Frictionless, float] | None:
     """Return the best law that is physical, and the largest difference of its ε from the best of all."""
     known = speed[np.isfinite(speed)]
     for fit in fits:

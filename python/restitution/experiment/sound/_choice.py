@@ -7,10 +7,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import nnls
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution.experiment.sound._envelope import bands, rounding
 from restitution.experiment.sound._pickers import MATCHED, RULES, Band, Matched, Picker, by_power
-
-Array = npt.NDArray[np.float64]
 
 _DRAWS = 24
 """Excerpts of the noise with which each rule is tried at each impact."""

@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 from scipy.signal import butter, find_peaks, sosfilt
 
-Array = npt.NDArray[np.float64]
+from restitution._internal.arrays import FloatArray as Array
 
 BANDS = ((40.0, 160.0), (160.0, 640.0), (640.0, 2560.0), (2560.0, 9000.0), (9000.0, 20000.0))
 """Bands in Hz that are looked at, besides the whole; those beyond the rate are left out."""

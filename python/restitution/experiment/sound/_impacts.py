@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.parameters import ParameterError, Problem, TooLargeError
 from restitution.experiment.flight.times import DOUBLED, DOUBTFUL, GOOD, MISSED, flag_attributes
 from restitution.experiment.sound._choice import Choice, choose
@@ -19,8 +20,6 @@ from restitution.experiment.sound._envelope import Envelope, bands, envelope, ro
 from restitution.experiment.sound._series import LONGEST_FLIGHT, best_series, strongest
 from restitution.experiment.sound._track import Track, followed
 from restitution.experiment.sound.load import clipped_share, load
-
-Array = npt.NDArray[np.float64]
 
 CANDIDATE = 4.0
 """A rise of a band's level is a candidate from so many times the spread of its rises."""

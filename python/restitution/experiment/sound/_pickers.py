@@ -5,11 +5,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import butter, firwin, resample_poly, sosfilt
 
-Array = npt.NDArray[np.float64]
+from restitution._internal.arrays import FloatArray as Array
+from restitution._internal.arrays import IntArray
+
 Picker = Callable[[Array], Array]
 """Windows, shape (m, n), to the place of the onset in each, in samples, shape (m,)."""
 
@@ -68,7 +69,7 @@ class Band:
         return rows, first / self._own
 
 
-def _summit(values: Array, place: npt.NDArray[np.int64]) -> Array:
+def _summit(values: Array, place: IntArray) -> Array:
     """Return the summit of the parabola through the largest value of each row and its neighbours."""
     rows = np.arange(len(values))
     inner = np.clip(place, 1, values.shape[1] - 2)

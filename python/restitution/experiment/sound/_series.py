@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
-Whole = npt.NDArray[np.int64]
+from restitution._internal.arrays import FloatArray as Array
+from restitution._internal.arrays import IntArray
 
 LONGEST_FLIGHT = 2.5
 """In s; 7.6 m high."""
@@ -32,7 +31,7 @@ class Series:
         Sum of their rewards less what uneven ratios cost.
     """
 
-    members: Whole
+    members: IntArray
     score: float
 
 

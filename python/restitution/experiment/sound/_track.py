@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from restitution._internal.arrays import FloatArray as Array
+from restitution._internal.arrays import IntArray
 from restitution.experiment.sound._envelope import Envelope
-
-Array = npt.NDArray[np.float64]
 
 _FAINT = 2.5
 """A rise of so many spreads is enough where an impact is expected."""
@@ -47,7 +47,7 @@ class Track:
     doubled: Array = field(default_factory=lambda: np.empty(0))
 
     @property
-    def places(self) -> npt.NDArray[np.int64]:
+    def places(self) -> IntArray:
         """Number of each impact in the series, those that were missed counted; shape (n,)."""
         skipped = np.zeros(self.times.size, dtype=np.int64)
         for earlier, number in self.missed:

@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.arrays import real, reals
 from restitution._internal.files import check_regular, path_from
 from restitution._internal.parameters import ParameterError, Problem, TooLargeError, wrong
 from restitution._internal.resources import available_memory
 from restitution.experiment.sound import _ffmpeg
-
-Array = npt.NDArray[np.float64]
 
 LOWEST_RATE = 2000.0
 """In Hz; below it nothing is left of an impact's sound."""

@@ -3,10 +3,9 @@
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 from scipy.signal import find_peaks
 
-Array = npt.NDArray[np.float64]
+from restitution._internal.arrays import FloatArray as Array
 
 _FEWEST = 3
 """Frames that a flight must have."""
