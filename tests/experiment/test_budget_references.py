@@ -138,7 +138,7 @@ def test_what_spin_and_tilt_add_is_a_difference_of_the_same_drops(
     """Those that are heard in both; errors by sampling are of the difference, too."""
     one = experiment(tilt=0.1, spin=20.0, seed=5)
     alone = _sources.shape(one, BODY)
-    source = (_sources.spin, _sources.tilt)[kind - 1](one, BODY, alone)
+    source = _sources.added(one, BODY, alone, **({"spin": 20.0}, {"tilt": 0.1})[kind - 1])
     run = drops[1]
     assert run["spin"] == (rs.RandomSpin(rate=20.0) if kind == 1 else None)
     assert run["incline"] == (0.1 if kind == 2 else 0.0)
@@ -157,19 +157,19 @@ def test_what_spin_and_tilt_add_is_a_difference_of_the_same_drops(
 
     by = np.array([[1.0, 0.0, 0.0, 0.0], [0.25, 0.25, 0.25, 0.25], [0.0, 2.0, -1.0, 0.0]])
     found = source.carried(by)
-    np.testing.assert_allclose(found.bias, by @ source.bias, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(found["bias"], by @ source.bias, rtol=1e-12, atol=1e-15)
     for k, row in enumerate(by):
         variance = max(float(row @ covariance @ row), 0.0)
-        assert found.deviation[k] == pytest.approx(math.sqrt(variance), rel=1e-9)
+        assert found["standard_deviation"][k] == pytest.approx(math.sqrt(variance), rel=1e-9)
         values = (there - here) @ row
-        assert found.bias_error[k] == pytest.approx(values.std() / math.sqrt(n), rel=1e-9)
+        assert found["bias_error"][k] == pytest.approx(values.std() / math.sqrt(n), rel=1e-9)
         squares = (away @ row) ** 2 - (off @ row) ** 2
         # σ² has this error; σ half of it over σ, or its root where σ is no larger.
         error = squares.std() / math.sqrt(n)
         expected = math.sqrt(error)
         if variance > 0.0:
             expected = min(expected, error / (2.0 * math.sqrt(variance)))
-        assert found.deviation_error[k] == pytest.approx(expected, rel=1e-9)
+        assert found["standard_deviation_error"][k] == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize(("lost", "refused"), [(5, False), (6, True)])
@@ -181,20 +181,20 @@ def test_nine_drops_of_ten_must_be_heard(lost: int, refused: bool, monkeypatch: 
     run = xr.Dataset({"time": (("particle", "impact"), times)})
     monkeypatch.setattr(_sources, "simulate", lambda *_, **__: run)
     if not refused:
-        assert np.isnan(_sources.simulated(one, BODY, spin=False, tilt=False)[:, 0]).sum() == lost
+        assert np.isnan(_sources.simulated(one, BODY)[:, 0]).sum() == lost
         return
     said = (
         r"^impacts = 4, drop = 0\.1: only 88 % of such balls bounce so often with resolved flights; must be "
         "fewer, or the body rounder$"
     )
     with pytest.raises(ValueError, match=said):
-        _sources.simulated(one, BODY, spin=False, tilt=False)
+        _sources.simulated(one, BODY)
 
 
 def test_what_the_engine_refuses_is_said_in_terms_of_the_experiment() -> None:
     said = r"^drop = 0\.1, gravity = 9\.81, spin = 1e\+30: gives "
     with pytest.raises(ValueError, match=said):
-        _sources.simulated(experiment(spin=1e30), BODY, spin=True, tilt=False)
+        _sources.simulated(experiment(spin=1e30), BODY, spin=1e30)
 
 
 def height(body: Any) -> Any:

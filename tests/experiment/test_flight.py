@@ -10,6 +10,7 @@ import xarray as xr
 import restitution as rs
 from reference.bouncing import flight_in_air, impact_times
 from restitution.experiment.flight.chain import chain, measured, measured_of
+from restitution.experiment.flight.setting import Once
 
 CONSTANT = 0.9
 
@@ -220,7 +221,7 @@ def test_derivatives_of_a_chain_are_its_differences(drag: rs.flight.Drag | None)
     """By each time, g, drop, terminal velocity, contact time and clock; 0 where there is no speed."""
     times = one_series(6)
     times[3] = np.nan
-    given = measured(times, np.full(6, 1e-5), (9.81, 0.0), (0.2, 0.0), drag, None, 0.0)
+    given = measured(times, np.full(6, 1e-5), Once(drop_height=0.2), drag, None)
     found = chain(given)
     assert np.isnan(found.before).tolist() == [False, False, False, True, True, False]
     assert np.isnan(found.after).tolist() == [False, False, True, True, False, True]

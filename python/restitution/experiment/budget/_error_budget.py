@@ -7,13 +7,14 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import FloatArray as Array
+from restitution._internal.arrays import flag
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.bodies import BODIES, Body
 from restitution.experiment.budget import _sources
 from restitution.experiment.budget._near_round import near_round
 from restitution.experiment.budget._results import ErrorBudget
 from restitution.experiment.budget._rough import roughness as rough
-from restitution.experiment.budget._sources import Source
+from restitution.experiment.budget._sources import Source, unbiased
 from restitution.experiment.budget.experiment import Experiment, Setting, mean_radius
 from restitution.experiment.flight.contact import ContactTime, contact_of
 from restitution.experiment.flight.drag import Drag
@@ -142,22 +143,22 @@ def error_budget(
     )
     force = _force(drag, body, setting)
     touching = contact_of(contact_time) or possible(body)
-    for name, corrected in (("drag_corrected", drag_corrected), ("contact_corrected", contact_corrected)):
-        if not isinstance(corrected, bool):
-            raise ParameterError(wrong(name, corrected, "True or False"))
+    drag_corrected = flag("drag_corrected", drag_corrected)
+    contact_corrected = flag("contact_corrected", contact_corrected)
     experiment = Experiment.of(law, setting)
-    n = setting.impacts
     shape = _sources.shape(experiment, body)
+    nothing = _sources.nothing(setting.impacts)
     sources = {
         "shape": shape,
         "roughness": rough(experiment, body),
         "timing": _sources.timing(experiment),
-        "gravity": _sources.gravity(experiment),
-        "clock": _sources.clock(experiment),
-        "drop": _sources.drop(experiment),
-        "tilt": _sources.tilt(experiment, body, shape) if setting.tilt > 0.0 else _sources.nothing(n),
-        "spin": _sources.spin(experiment, body, shape) if setting.spin > 0.0 else _sources.nothing(n),
-        "drag": _sources.nothing(n) if force is None else _sources.drag(experiment, force, drag_corrected),
+        # ε is a quotient of times, but for the first. Its speed is that of the drop, which no clock changes.
+        "gravity": unbiased(experiment.covariance(gravity=setting.gravity_error)),
+        "clock": unbiased(experiment.covariance(clock=setting.clock_uncertainty)),
+        "drop": unbiased(experiment.covariance(drop=setting.drop_uncertainty)),
+        "tilt": _sources.added(experiment, body, shape, tilt=setting.tilt),
+        "spin": _sources.added(experiment, body, shape, spin=setting.spin),
+        "drag": nothing if force is None else _sources.drag(experiment, force, drag_corrected),
         "contact": _sources.contact(experiment, touching, contact_corrected),
     }
     accounted = touching.uncertainty if contact_corrected else 0.0
@@ -264,12 +265,14 @@ _LONG = {
 def _carried(sources: list[Source], by: Array) -> dict[str, Array]:
     """Return the errors of m quantities by each source, and by all; arrays of shape (sources + 1, m)."""
     every = [one.carried(by) for one in sources]
-    bias, deviation, bias_error, deviation_error = (np.stack(parts) for parts in zip(*every, strict=True))
+    each = {name: np.stack([one[name] for one in every]) for name in _LONG}
+    deviation = each["standard_deviation"]
     total = np.sqrt(np.sum(deviation**2, axis=0))
-    error = np.sqrt(np.sum((deviation * deviation_error) ** 2, axis=0)) / np.maximum(total, 1e-300)
-    return {
-        "bias": np.vstack([bias, bias.sum(axis=0)]),
-        "standard_deviation": np.vstack([deviation, total]),
-        "bias_error": np.vstack([bias_error, np.sqrt(np.sum(bias_error**2, axis=0))]),
-        "standard_deviation_error": np.vstack([deviation_error, error]),
+    spread = np.sqrt(np.sum((deviation * each["standard_deviation_error"]) ** 2, axis=0))
+    of_all = {
+        "bias": each["bias"].sum(axis=0),
+        "standard_deviation": total,
+        "bias_error": np.sqrt(np.sum(each["bias_error"] ** 2, axis=0)),
+        "standard_deviation_error": spread / np.maximum(total, 1e-300),
     }
+    return {name: np.vstack([values, of_all[name]]) for name, values in each.items()}

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -42,13 +41,21 @@ class Source:
     errors: Array | None = None
     without: Array | None = None
 
-    def carried(self, by: Array) -> "Carried":
-        """Carry the errors on to m quantities that change by `by`, shape (m, n), with those of ε."""
+    def carried(self, by: Array) -> dict[str, Array]:
+        """Carry the errors on to m quantities that change by `by`, shape (m, n), with those of ε.
+
+        Returns
+        -------
+        dict of ndarray, shape (m,)
+            Bias and standard deviation of each, and their standard errors by sampling.
+        """
         bias = by @ self.bias
         variance = np.einsum("ij,jk,ik->i", by, self.covariance, by)
-        zero = np.zeros_like(bias)
+        deviation = np.sqrt(np.maximum(variance, 0.0))
+        found = {"bias": bias, "standard_deviation": deviation}
         if self.errors is None:
-            return Carried(bias, np.sqrt(np.maximum(variance, 0.0)), zero, zero)
+            zero = np.zeros_like(bias)
+            return found | {"bias_error": zero, "standard_deviation_error": zero}
         values = self.errors @ by.T
         squares = (values - values.mean(axis=0)) ** 2
         if self.without is not None:
@@ -58,53 +65,29 @@ class Source:
             values = values - before
         root = np.sqrt(len(values))
         error = squares.std(axis=0) / root
-        deviation = np.sqrt(np.maximum(variance, 0.0))
         known = np.minimum(error / (2.0 * np.maximum(deviation, 1e-300)), np.sqrt(error))
-        return Carried(bias, deviation, values.std(axis=0) / root, known)
+        return found | {"bias_error": values.std(axis=0) / root, "standard_deviation_error": known}
 
 
-class Carried(NamedTuple):
-    """Bias and standard deviation of m quantities, and their standard errors by sampling; shape (m,)."""
-
-    bias: Array
-    deviation: Array
-    bias_error: Array
-    deviation_error: Array
+def unbiased(covariance: Array) -> Source:
+    """Return a source whose errors have the mean 0."""
+    return Source(np.zeros(len(covariance)), covariance)
 
 
 def nothing(n: int) -> Source:
     """Return a source without error."""
-    return Source(np.zeros(n), np.zeros((n, n)))
+    return unbiased(np.zeros((n, n)))
 
 
 def timing(experiment: Experiment) -> Source:
     """Take independent errors of the times; the bias of a quotient is of second order in them."""
     error = experiment.setting.timing
-    n = experiment.speed.size
-    covariance = experiment.covariance(timing=error)
-    before, after = np.diff(experiment.times)[:-1], np.diff(experiment.times)[1:]
-    bias = np.zeros(n)
+    flights = np.diff(experiment.times)
+    before, after = flights[:-1], flights[1:]
+    bias = np.zeros(experiment.speed.size)
     # ⟨b/a⟩ - b/a = (b/a) var(a)/a² - cov(a, b)/a², with var = 2 s² and cov = -s² of neighbours.
     bias[1:] = (2.0 * after / before + 1.0) * (error / before) ** 2
-    return Source(bias, covariance)
-
-
-def gravity(experiment: Experiment) -> Source:
-    """Take an error of g: ε is a quotient of times, but for the first, whose speed is that of the drop."""
-    covariance = experiment.covariance(gravity=experiment.setting.gravity_error)
-    return Source(np.zeros(experiment.speed.size), covariance)
-
-
-def clock(experiment: Experiment) -> Source:
-    """Take an error of the clock, which acts as one of g that does not change the speed of the drop."""
-    covariance = experiment.covariance(clock=experiment.setting.clock_uncertainty)
-    return Source(np.zeros(experiment.speed.size), covariance)
-
-
-def drop(experiment: Experiment) -> Source:
-    """Take an error of the height of the drop, from which the first speed follows."""
-    covariance = experiment.covariance(drop=experiment.setting.drop_uncertainty)
-    return Source(np.zeros(experiment.speed.size), covariance)
+    return Source(bias, experiment.covariance(timing=error))
 
 
 def drag(experiment: Experiment, force: Drag, corrected: bool) -> Source:
@@ -121,7 +104,7 @@ def drag(experiment: Experiment, force: Drag, corrected: bool) -> Source:
 
 def contact(experiment: Experiment, time: ContactTime, corrected: bool) -> Source:
     """Take the time of contact: neglected, its effect is a bias; otherwise the error of it remains."""
-    by = experiment.derivatives(experiment.measured(0.0, 0.0, 0.0, 0.0, 0.0))[:, -2]
+    by = experiment.derivatives[:, -2]
     bias = np.zeros_like(by) if corrected else -by * time.at_1_m_s
     return Source(bias, np.outer(by, by) * time.uncertainty**2)
 
@@ -132,36 +115,28 @@ def _with_drag(experiment: Experiment, terminal: float) -> Array:
     speed = fall(experiment.setting.drop, g, terminal).speed
     told = [math.sqrt(2.0 * g * experiment.setting.drop)]
     for _ in range(experiment.setting.impacts):
-        flight = launched(float(at(experiment.law, np.array(speed))) * speed, g, terminal)
-        told.append(0.5 * g * flight.duration)
-        speed = flight.landing
+        duration, speed = launched(float(at(experiment.law, np.array(speed))) * speed, g, terminal)
+        told.append(0.5 * g * duration)
     heard = np.array(told)
     return np.asarray(heard[1:] / heard[:-1] - at(experiment.law, heard[:-1]))
 
 
 def shape(experiment: Experiment, body: Body) -> Source:
     """Take the shape alone: released at rest at random angles over a level plane, timed without error."""
-    return _source(simulated(experiment, body, spin=False, tilt=False))
+    return _source(simulated(experiment, body))
 
 
-def spin(experiment: Experiment, body: Body, shape_alone: Source) -> Source:
-    """Find what spin at release adds to the shape."""
-    return _beyond(_source(simulated(experiment, body, spin=True, tilt=False)), shape_alone)
-
-
-def tilt(experiment: Experiment, body: Body, shape_alone: Source) -> Source:
-    """Find what an inclined plate adds to the shape."""
-    return _beyond(_source(simulated(experiment, body, spin=False, tilt=True)), shape_alone)
-
-
-def _beyond(both: Source, one: Source) -> Source:
-    assert both.errors is not None
-    assert one.errors is not None
-    kept = ~np.isnan(both.errors[:, 0]) & ~np.isnan(one.errors[:, 0])
-    there, here = _source(both.errors[kept]), _source(one.errors[kept])
-    return Source(
-        there.bias - here.bias, there.covariance - here.covariance, both.errors[kept], one.errors[kept]
-    )
+def added(
+    experiment: Experiment, body: Body, alone: Source, *, spin: float = 0.0, tilt: float = 0.0
+) -> Source:
+    """Find what a spin at release in rad/s, or a plate inclined by an angle, adds to the shape alone."""
+    if spin == tilt == 0.0:
+        return nothing(experiment.speed.size)
+    both, one = simulated(experiment, body, spin=spin, tilt=tilt), alone.errors
+    assert one is not None
+    kept = ~np.isnan(both[:, 0]) & ~np.isnan(one[:, 0])
+    there, here = _source(both[kept]), _source(one[kept])
+    return Source(there.bias - here.bias, there.covariance - here.covariance, there.errors, here.errors)
 
 
 def _source(errors: Array) -> Source:
@@ -170,7 +145,7 @@ def _source(errors: Array) -> Source:
 
 
 @reported_elsewhere()
-def simulated(experiment: Experiment, body: Body, *, spin: bool, tilt: bool) -> Array:
+def simulated(experiment: Experiment, body: Body, *, spin: float = 0.0, tilt: float = 0.0) -> Array:
     """Return errors of ε of many drops by times alone, shape (m, n); NaN for those that are left out.
 
     Every law of the experiment has as many drops, m/laws, at the same angles.
@@ -180,12 +155,11 @@ def simulated(experiment: Experiment, body: Body, *, spin: bool, tilt: bool) -> 
     ValueError
         If too few particles bounce as often as asked.
     """
-    return np.vstack([_simulated(experiment, law, body, spin=spin, tilt=tilt) for law in experiment.laws])
+    return np.vstack([_simulated(experiment, law, body, spin, tilt) for law in experiment.laws])
 
 
-def _simulated(experiment: Experiment, law: Law, body: Body, *, spin: bool, tilt: bool) -> Array:
+def _simulated(experiment: Experiment, law: Law, body: Body, spin: float, tilt: float) -> Array:
     setting = experiment.setting
-    angle = setting.tilt if tilt else 0.0
     n = setting.impacts
     with in_terms_of(drop=setting.drop, gravity=setting.gravity, spin=setting.spin):
         run = simulate(
@@ -194,10 +168,10 @@ def _simulated(experiment: Experiment, law: Law, body: Body, *, spin: bool, tilt
             particles=setting.particles,
             impacts=n + 1,
             # Heights of fall are measured along the vertical, distances from the plane along its normal.
-            release_height=mean_radius(body) + setting.drop * math.cos(angle),
+            release_height=mean_radius(body) + setting.drop * math.cos(tilt),
             gravity=setting.gravity,
-            spin=RandomSpin(rate=setting.spin) if spin else None,
-            incline=angle,
+            spin=RandomSpin(rate=spin) if spin else None,
+            incline=tilt,
             seed=setting.seed,
         )
     g = setting.gravity

@@ -188,11 +188,6 @@ class Experiment:
             )
             raise ParameterError(wrong("law", self.law, allowed))
 
-    def measured(self, timing: float, gravity: float, drop: float, contact: float, clock: float) -> Measured:
-        """Return the measured times, g, drop and no contact time, with these standard errors."""
-        variances = np.array([*np.full(self.times.size, timing), gravity, drop, 0.0, contact, clock]) ** 2
-        return Measured(self.times, self.setting.gravity, self.setting.drop, None, variances)
-
     def covariance(
         self,
         timing: float = 0.0,
@@ -202,25 +197,19 @@ class Experiment:
         clock: float = 0.0,
     ) -> Array:
         """Return the covariance of ε less the law at the measured speed, shape (n, n), by standard errors."""
-        given = self.measured(timing, gravity, drop, contact, clock)
-        by = self.derivatives(given)
-        return np.asarray((by * given.variances) @ by.T)
+        errors = np.array([*np.full(self.times.size, timing), gravity, drop, 0.0, contact, clock])
+        return np.asarray((self.derivatives * errors**2) @ self.derivatives.T)
 
-    def derivatives(self, given: Measured) -> Array:
-        """Return those of ε less the law by all numbers that are measured, in the order of `Chain`."""
-        links = chain(given)
-        n = self.speed.size
-        # r_i = v'_i - ε_n(v_i) v_i, over v_i.
-        slope = self.coefficient + self._slope * self.speed
-        by = (links.after_by[:n] - slope[:, None] * links.before_by[:n]) / self.speed[:, None]
-        assert by.shape == (n, n + 1 + COMMON)
-        return np.asarray(by)
-
-    @property
-    def _slope(self) -> Array:
-        """dε_n/dv at the speeds."""
+    @cached_property
+    def derivatives(self) -> Array:
+        """Those of ε less the law by all numbers that are measured, in the order of `Chain`."""
+        none = np.zeros(self.times.size + COMMON)
+        links = chain(Measured(self.times, self.setting.gravity, self.setting.drop, None, none))
         step = 1e-6 * self.speed
-        return np.asarray((at(self.law, self.speed + step) - at(self.law, self.speed - step)) / (2.0 * step))
+        by_speed = (at(self.law, self.speed + step) - at(self.law, self.speed - step)) / (2.0 * step)
+        # r_i = v'_i - ε_n(v_i) v_i, over v_i.
+        slope = self.coefficient + by_speed * self.speed
+        return np.asarray((links.after_by[:-1] - slope[:, None] * links.before_by[:-1]) / self.speed[:, None])
 
     @cached_property
     def parameters(self) -> Array:

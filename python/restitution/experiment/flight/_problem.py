@@ -30,15 +30,10 @@ def joined(experiments: list[Measured], shift: Array | None) -> Chain:
     The times are each series' own, and so is the height of the drop; g, drag, contact time and clock are
     common.
     """
-    if (
-        len(
-            {
-                (one.gravity, one.terminal, one.contact, *one.variances[[-COMMON, -3, -2, -1]])
-                for one in experiments
-            }
-        )
-        != 1
-    ):
+    common = [
+        (one.gravity, one.terminal, one.contact, *one.variances[[-COMMON, -3, -2, -1]]) for one in experiments
+    ]
+    if len(set(common)) != 1:
         raise ParameterError(
             Problem("data", ": series with different g, drag, contact time or clock; must have the same")
         )
@@ -51,8 +46,8 @@ def joined(experiments: list[Measured], shift: Array | None) -> Chain:
     row = 0
     for number, (one, size) in enumerate(zip(experiments, sizes, strict=True)):
         rows = slice(row, row + size)
-        common = [total, total + COMMON - 1 + number, total + 1, total + 2, total + 3]
-        places = [*range(row, row + size), *common]
+        drop = total + COMMON - 1 + number
+        places = [*range(row, row + size), total, drop, total + 1, total + 2, total + 3]
         part = chain(one if shift is None else one.moved(shift[places]))
         before[rows], after[rows] = part.before, part.after
         before_by[rows, places] = part.before_by

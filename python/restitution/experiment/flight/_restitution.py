@@ -15,7 +15,7 @@ from restitution._internal.parameters import ParameterError, wrong
 from restitution.experiment.flight.chain import chain, measured
 from restitution.experiment.flight.contact import ContactTime, contact_of
 from restitution.experiment.flight.drag import Drag
-from restitution.experiment.flight.setting import QUARTZ, Drop, Errors
+from restitution.experiment.flight.setting import QUARTZ, Once
 from restitution.experiment.flight.times import checked
 
 
@@ -102,23 +102,25 @@ def restitution(
     [0.0006, 0.00063]
     """
     instants, errors = checked(times, uncertainty, doubtful=flag("doubtful", doubtful))
-    setting = Errors(
+    once = Once(
         gravity=gravity,
         gravity_uncertainty=gravity_uncertainty,
         clock_uncertainty=clock_uncertainty,
+        drop_height=drop_height,
         drop_height_uncertainty=drop_height_uncertainty,
     )
     attrs: dict[str, Any] = {
         "title": "Impact velocities and coefficients of restitution from times of impacts",
         "source": f"restitution {version('restitution')}",
-        "gravity": setting.gravity,
-        "gravity_uncertainty": setting.gravity_error,
-        "clock_uncertainty": setting.clock_uncertainty,
+        "gravity": once.gravity,
+        "gravity_uncertainty": once.gravity_error,
+        "clock_uncertainty": once.clock_uncertainty,
     }
-    drop = None
-    if drop_height is not None:
-        drop = (Drop(drop_height=drop_height).drop_height, setting.drop_height_uncertainty)
-        attrs |= {"drop_height": drop[0], "drop_height_uncertainty": drop[1]}
+    if once.drop_height is not None:
+        attrs |= {
+            "drop_height": once.drop_height,
+            "drop_height_uncertainty": once.drop_height_uncertainty,
+        }
     if drag is not None:
         if not isinstance(drag, Drag):
             raise ParameterError(wrong("drag", drag, "a Drag, or None"))
@@ -129,8 +131,7 @@ def restitution(
     contact = contact_of(contact_time)
     if contact is not None:
         attrs |= {"contact_time": contact.at_1_m_s, "contact_time_uncertainty": contact.uncertainty}
-    g = (setting.gravity, setting.gravity_error)
-    links = chain(measured(instants, errors, g, drop, drag, contact, setting.clock_uncertainty))
+    links = chain(measured(instants, errors, once, drag, contact))
     ratio = links.after / links.before
     with np.errstate(invalid="ignore"):
         ratio_by = (links.after_by - ratio[:, None] * links.before_by) / links.before[:, None]

@@ -10,7 +10,7 @@ from restitution._internal.parameters import ParameterError, Problem
 from restitution.drop.recorded import check_successive
 from restitution.experiment.flight.contact import ContactTime, delays
 from restitution.experiment.flight.drag import Drag, fall, speeds
-from restitution.experiment.flight.setting import setting_of
+from restitution.experiment.flight.setting import Once, setting_of
 from restitution.experiment.flight.times import check_series
 
 COMMON = 5
@@ -90,11 +90,9 @@ class Measured:
 def measured(
     times: Array,
     uncertainty: Array,
-    gravity: tuple[float, float],
-    drop: tuple[float, float] | None,
+    once: Once,
     drag: Drag | None,
     contact: ContactTime | None,
-    clock: float,
     name: str = "times",
 ) -> Measured:
     """Put together what was measured, with the standard errors of g, of the height and of the clock.
@@ -105,7 +103,7 @@ def measured(
         Naming the times, if drag would have let no body fly as long as between two of them.
     """
     if drag is not None:
-        most = _LONGEST * drag.terminal_velocity / gravity[0]
+        most = _LONGEST * drag.terminal_velocity / once.gravity
         longest = float(np.nanmax(np.diff(times), initial=0.0))
         if longest > most:
             speed = f"a terminal velocity V of {drag.terminal_velocity:g} m/s"
@@ -116,16 +114,16 @@ def measured(
         text = f" = {contact.at_1_m_s:g} s at 1 m/s: must be short beside the intervals between the impacts"
         raise ParameterError(Problem("contact_time", text))
     errors = [
-        gravity[1],
-        0.0 if drop is None else drop[1],
+        once.gravity_error,
+        0.0 if once.drop_height is None else once.drop_height_uncertainty,
         0.0 if drag is None else drag.uncertainty,
         contact.uncertainty,
-        clock,
+        once.clock_uncertainty,
     ]
     return Measured(
         times,
-        gravity[0],
-        None if drop is None else drop[0],
+        once.gravity,
+        once.drop_height,
         None if drag is None else drag.terminal_velocity,
         np.concatenate([np.nan_to_num(uncertainty), errors]) ** 2,
         contact.at_1_m_s,
@@ -149,9 +147,10 @@ def measured_of(data: xr.Dataset, name: str = "data") -> Measured:
         f"{name}.time",
         f"{name}.uncertainty",
     )
-    gravity, drop, drag, contact, clock = setting_of(name, data)
-    falls = int(data["impact"][0]) == 0
-    return measured(times, errors, gravity, drop if falls else None, drag, contact, clock, f"{name}.time")
+    once, drag, contact = setting_of(name, data)
+    if int(data["impact"][0]) > 0:
+        once = once.model_copy(update={"drop_height": None})
+    return measured(times, errors, once, drag, contact, f"{name}.time")
 
 
 def chain(given: Measured) -> Chain:

@@ -163,15 +163,8 @@ def fall(height: float, gravity: float, terminal: float | None) -> Fall:
     )
 
 
-class Launched(NamedTuple):
-    """Give the duration of a flight in s and the speed in m/s at its end."""
-
-    duration: float
-    landing: float
-
-
-def launched(speed: float, gravity: float, terminal: float) -> Launched:
-    """Return the flight that begins upwards with a speed, up to where it ends at the same height."""
+def launched(speed: float, gravity: float, terminal: float) -> tuple[float, float]:
+    """Return the duration in s of a flight that begins upwards with a speed, and the speed at its end."""
     q = speed / terminal
     duration = terminal / gravity * (math.atan(q) + math.asinh(q))
-    return Launched(duration, speed / math.sqrt(1.0 + q * q))
+    return duration, speed / math.sqrt(1.0 + q * q)

@@ -1,6 +1,6 @@
 """Values measured once in a series: g, the drop, the terminal velocity, the contact time, and the clock."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, TypeVar
 
 import xarray as xr
 from pydantic import Field
@@ -15,6 +15,8 @@ _EARTH = 3e-3
 QUARTZ = 1e-4
 """Relative standard error of a clock: telephones and sound cards keep to 100 parts in a million."""
 _ERROR_OR_NONE = Allowed("a finite number in [0, 1e30] (m/s²), or None")
+_HEIGHT_OR_NONE = Allowed("a real number in [1e-30, 1e+30] (m), or None")
+T = TypeVar("T", bound=Parameters)
 
 
 class Gravity(Parameters):
@@ -31,29 +33,14 @@ class Gravity(Parameters):
         return _EARTH * self.gravity if given is None else given
 
 
-class Errors(Gravity):
-    """These, and the standard error of the height of the drop."""
+class Once(Gravity):
+    """These, and the distance that the ball fell from rest to the first impact, with its standard error."""
 
+    drop_height: Annotated[Number | None, Field(ge=LEAST, le=LARGEST), _HEIGHT_OR_NONE] = None
     drop_height_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m")] = 0.0
 
 
-class Drop(Parameters):
-    """Give the distance that the ball fell from rest to the first impact."""
-
-    drop_height: Annotated[Number, Field(ge=LEAST, le=LARGEST, description="m")]
-
-
-class Setting(NamedTuple):
-    """Numbers with their standard errors, and the drag; None of what was not measured."""
-
-    gravity: tuple[float, float]
-    drop: tuple[float, float] | None
-    drag: Drag | None
-    contact: ContactTime | None
-    clock: float
-
-
-def setting_of(name: str, data: xr.Dataset) -> Setting:
+def setting_of(name: str, data: xr.Dataset) -> tuple[Once, Drag | None, ContactTime | None]:
     """Read the attributes of a Dataset that `flight.restitution` returned; errors that are not there are 0.
 
     Raises
@@ -61,28 +48,16 @@ def setting_of(name: str, data: xr.Dataset) -> Setting:
     ParameterError
         If one is missing, or is not as `flight.restitution` takes it.
     """
-    attrs = data.attrs
-    falls = "drop_height" in attrs or "drop_height_uncertainty" in attrs
-    drags = "terminal_velocity" in attrs or "terminal_velocity_uncertainty" in attrs
-    attributes = {"uncertainty": "terminal_velocity_uncertainty"}
-    with renamed(lambda each: f"{name}.{attributes.get(each, each)}"):
-        none = {"gravity_uncertainty": 0.0, "clock_uncertainty": 0.0}
-        given = Errors(**none | {each: attrs[each] for each in Errors.model_fields if each in attrs})
-        drop = None
-        if falls:
-            height = Drop(**{each: attrs[each] for each in Drop.model_fields if each in attrs})
-            drop = (height.drop_height, given.drop_height_uncertainty)
-        drag = None
-        if drags:
-            drag = Drag(
-                terminal_velocity=attrs.get("terminal_velocity"),
-                uncertainty=attrs.get("terminal_velocity_uncertainty", 0.0),
-            )
-    contact = None
-    if "contact_time" in attrs or "contact_time_uncertainty" in attrs:
-        named = {"at_1_m_s": "contact_time", "uncertainty": "contact_time_uncertainty"}
-        with renamed(lambda each: f"{name}.{named.get(each, each)}"):
-            contact = ContactTime(
-                at_1_m_s=attrs.get("contact_time"), uncertainty=attrs.get("contact_time_uncertainty", 0.0)
-            )
-    return Setting((given.gravity, given.gravity_error), drop, drag, contact, given.clock_uncertainty)
+
+    def read(kind: type[T], **own: str) -> T | None:
+        """Make what has these attributes, by the names of its fields; None where there are none."""
+        given = {field: data.attrs[each] for field, each in own.items() if each in data.attrs}
+        with renamed(lambda field: f"{name}.{own.get(field, field)}"):
+            return kind(**given) if given else None
+
+    none = {"gravity_uncertainty": 0.0, "clock_uncertainty": 0.0}
+    with renamed(lambda field: f"{name}.{field}"):
+        once = Once(**none | {each: data.attrs[each] for each in Once.model_fields if each in data.attrs})
+    drag = read(Drag, terminal_velocity="terminal_velocity", uncertainty="terminal_velocity_uncertainty")
+    contact = read(ContactTime, at_1_m_s="contact_time", uncertainty="contact_time_uncertainty")
+    return once, drag, contact

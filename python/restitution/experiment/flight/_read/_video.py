@@ -34,10 +34,8 @@ def impacts_of_track(t: Array, y: Array) -> tuple[Array, Array]:
     ValueError
         If there are not two impacts with enough frames about them.
     """
-    lowest, _ = (
-        find_peaks(-y, prominence=_PROMINENCE * np.ptp(y)) if y.size else (np.empty(0, dtype=int), None)
-    )
-    edges = [-1, *lowest.tolist(), y.size]
+    lowest = find_peaks(-y, prominence=_PROMINENCE * np.ptp(y))[0].tolist() if y.size else []
+    edges = [-1, *lowest, y.size]
     flights = [np.arange(begin + 1, end) for begin, end in pairwise(edges)]
     # A flight that has too few frames ends the series, or comes before it.
     good = [flight.size >= _FEWEST for flight in flights]
@@ -53,12 +51,9 @@ def impacts_of_track(t: Array, y: Array) -> tuple[Array, Array]:
     origin = t[frames].mean()
     x = t - origin
     design = np.zeros((frames.size, 2 * len(flights) + 1))
-    row = 0
-    for number, flight in enumerate(flights):
-        rows = slice(row, row + flight.size)
-        design[rows, 2 * number] = 1.0
-        design[rows, 2 * number + 1] = x[flight]
-        row += flight.size
+    rows, numbers = np.arange(frames.size), np.repeat(np.arange(len(flights)), [one.size for one in flights])
+    design[rows, 2 * numbers] = 1.0
+    design[rows, 2 * numbers + 1] = x[frames]
     design[:, -1] = -(x[frames] ** 2)
     found, *_ = np.linalg.lstsq(design, y[frames], rcond=None)
     residual = y[frames] - design @ found
