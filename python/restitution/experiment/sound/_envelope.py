@@ -10,10 +10,8 @@ from restitution._internal.arrays import FloatArray as Array
 
 BANDS = ((40.0, 160.0), (160.0, 640.0), (640.0, 2560.0), (2560.0, 9000.0), (9000.0, 20000.0))
 """Bands in Hz that are looked at, besides the whole; those beyond the rate are left out."""
-_PERIODS = 1.0
-"""An envelope is smoothed over so many periods of the lowest frequency of its band."""
 _SHORTEST = 0.8e-3
-"""Or over this time in s, if that is longer."""
+"""An envelope is smoothed over a period of the lowest frequency of its band, or this time in s if longer."""
 _FLOOR = 0.2
 """Quantile of the envelope that is taken for noise."""
 _APART = 2.5
@@ -71,7 +69,7 @@ def envelope(samples: Array, rate: float, band: tuple[float, float], least: floa
     """Follow the level of a band, causally; its noise has the power `least` or more."""
     sections = butter(2, band, "bandpass", fs=rate, output="sos")
     power = sosfilt(sections, samples) ** 2
-    width = max(_PERIODS / band[0], _SHORTEST)
+    width = max(1.0 / band[0], _SHORTEST)
     # The whole band: its shortest parts count.
     if band[1] > 40.0 * band[0]:
         width = 4.0 * _SHORTEST

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
 from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -46,14 +45,6 @@ _SAME_BALL = 0.02
 """Part by which the ratio of two flights may differ from that of most where another ball is heard."""
 _OTHER_MEMBERS = 5
 """Impacts that another ball must have had between those of the first."""
-
-
-@dataclass(frozen=True)
-class _Heard:
-    """One series, with what was made of it."""
-
-    track: Track
-    choice: Choice
 
 
 def impacts(source: str | PathLike[str] | npt.ArrayLike, rate: float | None = None) -> xr.Dataset:
@@ -130,8 +121,8 @@ def _heard_in(samples: Array, own: float, name: str) -> xr.Dataset:
             text = f": clipped throughout ({100 * share:.0f} % of the loud samples); record with less gain"
             raise ParameterError(Problem(name, text))
         raise ParameterError(Problem(name, f": {_what_was_heard(loudest)}"))
-    heard = [_Heard(track, _picked(samples[:, channel], own, track)) for track in tracks]
-    heard.sort(key=lambda one: float(one.choice.times[0]))
+    heard = [(track, _picked(samples[:, channel], own, track)) for track in tracks]
+    heard.sort(key=lambda one: float(one[1].times[0]))
     found = _dataset(heard, own, channel, clipped_share(samples), name)
     others = _of_another_ball(tracks)
     if others:
@@ -141,7 +132,12 @@ def _heard_in(samples: Array, own: float, name: str) -> xr.Dataset:
 
 def _tracks(samples: Array, rate: float) -> tuple[int, list[Track], Envelope]:
     """Follow the series in the channel and the band where most impacts are heard."""
-    best: tuple[float, int, list[Track], Envelope, list[Envelope]] | None = None
+    _, channel, tracks, one, heard = max(_tried(samples, rate), key=lambda tried: tried[0])
+    return channel, [followed(track, heard) for track in tracks], one
+
+
+def _tried(samples: Array, rate: float) -> Iterator[tuple[float, int, list[Track], Envelope, list[Envelope]]]:
+    """Search every channel and band; yield what is found there, after what it is worth."""
     for channel in range(samples.shape[1]):
         if not np.ptp(samples[:, channel]) > 0.0:
             continue
@@ -153,15 +149,10 @@ def _tracks(samples: Array, rate: float) -> tuple[int, list[Track], Envelope]:
             longest = LONGEST_FLIGHT
             while longest > _SHORT_FLIGHT:
                 tracks = _series_in(one, *candidates, longest)
-                worth = sum(float(np.minimum(track.rewards, _SATURATED).sum()) for track in tracks)
-                worth -= _PIECE * max(len(tracks) - 1, 0)
-                if best is None or worth > best[0]:
-                    best = (worth, channel, tracks, one, heard)
+                worth = sum(track.worth for track in tracks) - _PIECE * max(len(tracks) - 1, 0)
+                yield worth, channel, tracks, one, heard
                 flights = [float(np.diff(track.times).max()) for track in tracks]
                 longest = _SHORTER * min(longest, max(flights, default=longest))
-    assert best is not None
-    _, channel, tracks, one, heard = best
-    return channel, [followed(track, heard) for track in tracks], one
 
 
 def _rewards(one: Envelope, rises: Array) -> Array:
@@ -179,7 +170,8 @@ def _series_in(one: Envelope, times: Array, rewards: Array, longest: float) -> l
         members = found.members
         if found.score < _MEAN * members.size or (tracks and members.size < _FURTHER_MEMBERS):
             return tracks
-        tracks.append(Track(times[members], rewards[members], one))
+        worth = float(np.minimum(rewards[members], _SATURATED).sum())
+        tracks.append(Track(times[members], worth, one))
         # What lies within a series is its own: echoes, second bursts, noise.
         left = (times < times[members[0]] - one.width) | (times > times[members[-1]] + one.width)
         times, rewards = times[left], rewards[left]
@@ -237,46 +229,43 @@ def _picked(samples: Array, rate: float, track: Track) -> Choice:
     gaps = np.diff(track.times)
     before = np.minimum(1.5 * width + 2e-3, 0.4 * np.append(gaps[0], gaps))
     after = np.minimum(width + 1.5e-3, 0.4 * np.append(gaps, gaps[-1]))
-
     return choose(samples, rate, track.times, before, after)
 
 
-def _dataset(heard: list[_Heard], rate: float, channel: int, clipped: float, name: str) -> xr.Dataset:
-    columns: dict[str, list[Array]] = {key: [] for key in ("time", "uncertainty", "flag", "series", "level")}
-    for number, one in enumerate(heard):
-        for key, values in _rows(one).items():
-            columns[key].append(values)
-        columns["series"].append(np.full(columns["time"][-1].size, number))
-    joined = {key: np.concatenate(values) for key, values in columns.items()}
-    words: dict[str, dict[str, Any]] = {
-        "time": {"long_name": "time of the impact from the beginning of the recording", "units": "s"},
-        "uncertainty": {"long_name": "standard error of the time", "units": "s"},
-        "flag": flag_attributes(),
-        "series": {"long_name": "number of the series"},
-        "level": {"long_name": "level over the noise", "units": "dB"},
-    }
-    kinds = {"flag": np.int8, "series": np.int64}
+def _dataset(
+    heard: list[tuple[Track, Choice]], rate: float, channel: int, clipped: float, name: str
+) -> xr.Dataset:
+    tables = [_rows(track, choice) for track, choice in heard]
+    time, uncertainty, flag, level = np.concatenate(tables, axis=1)
+    series = np.repeat(np.arange(len(tables)), [one.shape[1] for one in tables])
+    of_time = {"long_name": "time of the impact from the beginning of the recording", "units": "s"}
     return xr.Dataset(
         {
-            key: ("impact", values.astype(kinds.get(key, np.float64)), words[key])
-            for key, values in joined.items()
+            "time": ("impact", time, of_time),
+            "uncertainty": (
+                "impact",
+                uncertainty,
+                {"long_name": "standard error of the time", "units": "s"},
+            ),
+            "flag": ("impact", flag.astype(np.int8), flag_attributes()),
+            "series": ("impact", series, {"long_name": "number of the series"}),
+            "level": ("impact", level, {"long_name": "level over the noise", "units": "dB"}),
         },
         attrs={
             "title": "Impacts heard in a recording",
             "source": f"{name}, listened to by restitution {version('restitution')}",
             "rate": rate,
             "channel": channel,
-            "band": "; ".join("{:g} to {:g} Hz".format(*one.track.envelope.band) for one in heard),
-            "rule": "; ".join(one.choice.rule for one in heard),
+            "band": "; ".join("{:g} to {:g} Hz".format(*track.envelope.band) for track, _ in heard),
+            "rule": "; ".join(choice.rule for _, choice in heard),
             "clipped_share": clipped,
         },
     )
 
 
-def _rows(one: _Heard) -> dict[str, Array]:
-    """Lay out a series, with what was missed and doubled in it."""
-    track, choice = one.track, one.choice
-    times, errors = choice.times, choice.errors
+def _rows(track: Track, choice: Choice) -> Array:
+    """Lay out times, errors, flags and levels of a series, with what was missed and doubled in it."""
+    times, errors, late = choice.times, choice.errors, track.doubled
     # Where no onset is found near the rise of the level, the rise stands for it, with the delay of the
     # others.
     delay = times - track.times
@@ -284,27 +273,12 @@ def _rows(one: _Heard) -> dict[str, Array]:
     times = np.where(astray, track.times + np.median(delay), times)
     errors = np.where(astray, np.maximum(track.envelope.width, errors), errors)
     flags = np.where(choice.doubtful | track.faint | astray, DOUBTFUL, GOOD)
-    levels = track.levels
-    rows = [np.stack([times, errors, flags, levels, times])]
-    for earlier, number in track.missed:
-        # Between two that were heard; for the order, flights are taken as equal.
-        part = np.arange(1, number + 1) / (number + 1)
-        between = times[earlier] + part * (times[earlier + 1] - times[earlier])
-        gap = np.full(number, np.nan)
-        rows.append(np.stack([gap, gap, np.full(number, MISSED), gap, between]))
-    if track.doubled.size:
-        late = track.doubled
-        rows.append(
-            np.stack(
-                [
-                    late,
-                    np.full(late.size, track.envelope.width),
-                    np.full(late.size, DOUBLED),
-                    track.levels_at(late),
-                    late,
-                ]
-            )
-        )
-    table = np.concatenate(rows, axis=1)
-    table = table[:, np.argsort(table[4], kind="stable")]
-    return dict(zip(("time", "uncertainty", "flag", "level"), table[:4], strict=True))
+    # One that was not heard is, for the order, in the middle of its flight.
+    between = 0.5 * (times[track.missed] + times[track.missed + 1])
+    rows = (
+        (times, errors, flags, track.levels_at(track.times), times),
+        (np.nan, np.nan, MISSED, np.nan, between),
+        (late, track.envelope.width, DOUBLED, track.levels_at(late), late),
+    )
+    table = np.concatenate([np.broadcast_arrays(*row) for row in rows], axis=1)
+    return table[:4, np.argsort(table[4], kind="stable")]

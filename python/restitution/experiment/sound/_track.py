@@ -1,6 +1,6 @@
 """A series followed to its end: later impacts are looked for where the flights before say they must be."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -27,32 +27,26 @@ class Track:
 
     Attributes
     ----------
-    times, rewards : ndarray, shape (n,)
-        When the level rises, in s, and what each impact was worth in the search.
+    times : ndarray, shape (n,)
+        When the level rises, in s.
+    worth : float
+        What its impacts were worth in the search.
     envelope : Envelope
         Of the band in which the series was found.
     faint : ndarray of bool, shape (n,)
         Which impacts were found only because they were expected.
-    missed : tuple of (int, int)
-        After which impact, and how many, were not heard.
+    missed : ndarray of int
+        After which impacts one was not heard.
     doubled : ndarray
         Times of sounds as loud as an impact that belong to no series.
     """
 
     times: Array
-    rewards: Array
+    worth: float
     envelope: Envelope
     faint: npt.NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, dtype=np.bool_))
-    missed: tuple[tuple[int, int], ...] = ()
+    missed: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     doubled: Array = field(default_factory=lambda: np.empty(0))
-
-    @property
-    def places(self) -> IntArray:
-        """Number of each impact in the series, those that were missed counted; shape (n,)."""
-        skipped = np.zeros(self.times.size, dtype=np.int64)
-        for earlier, number in self.missed:
-            skipped[earlier + 1 :] += number
-        return np.arange(self.times.size) + skipped
 
     def levels_at(self, times: Array) -> Array:
         """Return the level in dB over the noise within a smoothing time after each of the times."""
@@ -61,25 +55,16 @@ class Track:
         starts = np.clip((times / step).astype(np.int64), 0, level.size - 1)
         return np.array([level[start : start + reach].max() for start in starts])
 
-    @property
-    def levels(self) -> Array:
-        """Level of each impact in dB over the noise."""
-        return self.levels_at(self.times)
-
 
 def followed(track: Track, bands: list[Envelope]) -> Track:
     """Search for impacts after the last, band by band, and for missed and doubled ones within the series."""
     times, faint = list(track.times), [False] * track.times.size
     weak = [one.candidates(_FAINT) for one in bands]
-    while True:
-        found = _next(np.array(times), track.envelope, bands, weak)
-        if found is None:
-            break
+    while (found := _next(np.array(times), track.envelope, bands, weak)) is not None:
         times.append(found)
         faint.append(True)
     heard = np.array(times)
-    rewards = np.append(track.rewards, np.zeros(heard.size - track.rewards.size))
-    return Track(heard, rewards, track.envelope, np.array(faint), _missed(heard), _doubled(track))
+    return replace(track, times=heard, faint=np.array(faint), missed=_missed(heard), doubled=_doubled(track))
 
 
 def _ratio(times: Array) -> float:
@@ -114,19 +99,16 @@ def _next(
     return None if best is None else best[1]
 
 
-def _missed(times: Array) -> tuple[tuple[int, int], ...]:
+def _missed(times: Array) -> IntArray:
     """Find flights that are two in one, by how they compare with the one before."""
     flights = np.diff(times)
     if flights.size < 4:
-        return ()
-    typical = float(np.exp(np.median(np.log(flights[1:] / flights[:-1]))))
-    found = []
-    for place in range(1, flights.size):
-        # One missed: the flight is (e + e²) of the one before.
-        one = flights[place] / flights[place - 1]
-        if abs(np.log(one / (typical + typical**2))) < 0.15 and one > 1.15:
-            found.append((place, 1))
-    return tuple(found)
+        return np.empty(0, dtype=np.int64)
+    ratios = flights[1:] / flights[:-1]
+    typical = float(np.exp(np.median(np.log(ratios))))
+    # One missed: the flight is (e + e²) of the one before.
+    two = (np.abs(np.log(ratios / (typical + typical**2))) < 0.15) & (ratios > 1.15)
+    return 1 + np.flatnonzero(two)
 
 
 def _doubled(track: Track) -> Array:

@@ -137,11 +137,9 @@ def check_memory(name: str, times: int, channels: int) -> None:
 
 def clipped_share(samples: Array) -> float:
     """Find which share of the loud samples sits at the very limit, above or below; shape (n, channels)."""
-    share = 0.0
-    for channel in samples.T:
-        low, high = float(channel.min()), float(channel.max())
-        loud = int(np.count_nonzero((channel > 0.5 * high) | (channel < 0.5 * low)))
-        at_limit = int(np.count_nonzero((channel > 0.999 * high) | (channel < 0.999 * low)))
-        # The loudest sample of a sound is not clipping.
-        share = max(share, (at_limit - 2) / max(loud, 1))
-    return share
+    low, high = samples.min(axis=0), samples.max(axis=0)
+    loud, at_limit = (
+        np.count_nonzero((samples > part * high) | (samples < part * low), axis=0) for part in (0.5, 0.999)
+    )
+    # The loudest sample of a sound is not clipping.
+    return max(0.0, float(np.max((at_limit - 2) / np.maximum(loud, 1))))
