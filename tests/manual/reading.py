@@ -27,7 +27,7 @@ from restitution import flight, study
 from restitution.distribution._store import sealed
 from restitution.drop import toml as _toml
 from restitution.experiment import listen
-from restitution.experiment.listen._analysis import Setting
+from restitution.experiment.listen import Setting
 from restitution.study._results import study_in
 
 

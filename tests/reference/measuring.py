@@ -12,7 +12,7 @@ from reference.calls import Call, folder, good, of, some
 from restitution import explorer, flight, sound, study
 from restitution.drop.run import Run
 from restitution.experiment import budget, inference, listen
-from restitution.experiment.listen._analysis import Setting
+from restitution.experiment.listen import Setting
 from restitution.figures import laws
 from restitution.papers import glielmo2014, gunkelmann2014
 

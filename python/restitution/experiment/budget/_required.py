@@ -114,8 +114,7 @@ def required_roundness(
     experiment = Experiment.of(law, setting)
     surface = rough(experiment, ball(0.0))
     touching = contact(experiment, contact_of(contact_time) or possible(ball(0.0)), corrected=False)
-    deviations: list[float] = []
-    rows: list[tuple[float, float, float]] = []
+    rows: list[tuple[float, ...]] = []
     for share in np.geomspace(_ROUNDEST, _LEAST_ROUND * 2.0 / lobes, _STEPS):
         body = ball(float(share))
         try:
@@ -132,23 +131,23 @@ def required_roundness(
         bias = alone.bias + surface.bias + touching.bias
         square = alone.covariance + surface.covariance + touching.covariance + np.outer(bias, bias)
         one = 1.0 / experiment.coefficient
-        fitted = curve @ square @ curve.T
-        middle = float(experiment.coefficient.mean())
-        deviations.append(asked.diameter * share)
-        single = math.sqrt(np.mean(np.diag(square) * one**2))
-        mean = math.sqrt(square.sum()) / n / middle
-        rows.append((single, mean, math.sqrt(np.mean(np.diag(fitted) * one**2))))
+        single, fit = (
+            math.sqrt(np.mean(np.diag(each) * one**2)) for each in (square, curve @ square @ curve.T)
+        )
+        mean = math.sqrt(square.sum()) / n / float(experiment.coefficient.mean())
+        rows.append((asked.diameter * share, single, mean, fit))
+    deviations, *columns = np.array(rows).T
     data = xr.Dataset(
         {
             name: ("out_of_roundness", column, {"units": "1", "long_name": f"error of ε over ε, {what}"})
             for name, column, what in zip(
                 ("single", "mean", "fit"),
-                np.array(rows).T,
+                columns,
                 ("one coefficient", "mean over a run", "fitted law"),
                 strict=True,
             )
         },
-        coords={"out_of_roundness": ("out_of_roundness", np.array(deviations), {"units": "m"})},
+        coords={"out_of_roundness": ("out_of_roundness", deviations, {"units": "m"})},
         attrs={
             "title": "Error of the coefficient of restitution that an out-of-roundness causes",
             "source": f"restitution {version('restitution')}",

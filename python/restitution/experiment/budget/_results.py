@@ -1,6 +1,7 @@
 """An error budget and a required roundness: what they say in words, as tables and figures."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -12,18 +13,28 @@ from restitution._internal.parameters import ParameterError, wrong
 from restitution.bodies import GRADES
 from restitution.figures.style import Style
 
+
+class _Look(NamedTuple):
+    """How a source is called and drawn: number of its colour, or strength of a grey, and marker."""
+
+    words: str
+    color: int | None
+    grey: float
+    marker: str
+
+
 _SOURCES = {
-    "shape": "shape",
-    "roughness": "roughness",
-    "timing": "times",
-    "gravity": "g",
-    "clock": "clock",
-    "drop": "drop height",
-    "tilt": "plate tilt",
-    "spin": "spin at release",
-    "drag": "air drag",
-    "contact": "time of contact",
-    "total": "all",
+    "shape": _Look("shape", 0, 1.0, "o"),
+    "roughness": _Look("roughness", None, 0.25, "p"),
+    "timing": _Look("times", 1, 1.0, "s"),
+    "gravity": _Look("g", 2, 1.0, "^"),
+    "clock": _Look("clock", None, 0.85, "h"),
+    "drop": _Look("drop height", 3, 1.0, "v"),
+    "tilt": _Look("plate tilt", 4, 1.0, "D"),
+    "spin": _Look("spin at release", None, 0.7, "x"),
+    "drag": _Look("air drag", None, 0.45, "+"),
+    "contact": _Look("time of contact", 5, 1.0, "*"),
+    "total": _Look("all", None, 1.0, ""),
 }
 
 
@@ -87,7 +98,7 @@ class ErrorBudget(Content):
         how = ", neglected" if neglected else ""
         if source == "contact" and not self.data.attrs["contact_given"]:
             how = ", not given"
-        return _SOURCES[source] + how
+        return _SOURCES[source].words + how
 
     def __repr__(self) -> str:
         data = self.data
@@ -114,7 +125,7 @@ class ErrorBudget(Content):
             speed = self.data.impact_velocity.values
             total = self.data.sel(source="total")
             least = _DRAWN * float(np.hypot(total.standard_deviation, total.bias).max())
-            for source, (number, grey, marker) in _LOOKS.items():
+            for source, look in _SOURCES.items():
                 one = self.data.sel(source=source)
                 known = one.standard_deviation > 2.0 * one.standard_deviation_error
                 biased = np.abs(one.bias) > 2.0 * one.bias_error
@@ -124,8 +135,8 @@ class ErrorBudget(Content):
                 shown = error > least
                 if shown.any():
                     name = self._named(source)
-                    color = ink(grey) if number is None else colors()[number]
-                    axes.plot(speed[shown], error[shown], color=color, marker=marker, label=name)
+                    color = ink(look.grey) if look.color is None else colors()[look.color]
+                    axes.plot(speed[shown], error[shown], color=color, marker=look.marker, label=name)
             axes.set_yscale("log")
             plain_log(axes, [tick for tick in _TICKS if speed.min() <= tick <= speed.max()])
             axes.set_xlabel(r"impact velocity $v$ (m/s)")
@@ -150,20 +161,6 @@ def _cell(one: xr.Dataset, prefix: str) -> str:
     return f"{shown} ± {deviation:.1e}"
 
 
-_LOOKS: dict[str, tuple[int | None, float, str]] = {
-    "shape": (0, 1.0, "o"),
-    "roughness": (None, 0.25, "p"),
-    "timing": (1, 1.0, "s"),
-    "gravity": (2, 1.0, "^"),
-    "clock": (None, 0.85, "h"),
-    "drop": (3, 1.0, "v"),
-    "tilt": (4, 1.0, "D"),
-    "spin": (None, 0.7, "x"),
-    "drag": (None, 0.45, "+"),
-    "contact": (5, 1.0, "*"),
-    "total": (None, 1.0, ""),
-}
-"""Number of the colour, or strength of a grey, and marker of each source."""
 _TICKS = tuple(digit * 10.0**power for power in range(-3, 3) for digit in (1, 1.5, 2, 3, 4, 6, 8))
 _DRAWN = 1e-3
 _NOTHING = 1e-12

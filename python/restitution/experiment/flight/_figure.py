@@ -54,9 +54,9 @@ def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit, style: Style 
         speed = one.impact_velocity.to_numpy().astype(np.float64)
         good = ~np.isfinite(one.restitution.to_numpy()) | (speed > 0.0)
         check_each(f"{name}.impact_velocity", speed, good, "a speed > 0 at every coefficient")
-    series = list(named.values())
-    known = [np.isfinite(one.restitution.values) for one in series]
-    if not any(rows.any() for rows in known):
+    known = [one.isel(impact=np.flatnonzero(np.isfinite(one.restitution.values))) for one in named.values()]
+    speeds = np.concatenate([one.impact_velocity.values for one in known])
+    if not speeds.size:
         raise ParameterError(
             wrong("data", data, "a Dataset of flight.restitution with at least one coefficient")
         )
@@ -64,16 +64,13 @@ def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit, style: Style 
         if not isinstance(fit, LawFit):
             raise ParameterError(wrong("fits", fit, "fits, as flight.fit returns them"))
     figure, [[axes]] = panels(*column(2.6))
-    speeds = np.concatenate(
-        [one.impact_velocity.values[rows] for one, rows in zip(series, known, strict=True)]
-    )
     # Where shape makes hundreds of points scatter far, the curves must stay in sight.
-    for number, (one, rows) in enumerate(zip(series, known, strict=True)):
+    for number, one in enumerate(known):
         axes.errorbar(
-            one.impact_velocity.values[rows],
-            one.restitution.values[rows],
-            xerr=one.impact_velocity_error.values[rows],
-            yerr=one.restitution_error.values[rows],
+            one.impact_velocity.values,
+            one.restitution.values,
+            xerr=one.impact_velocity_error.values,
+            yerr=one.restitution_error.values,
             linestyle="none",
             marker="o",
             markersize=2.5,

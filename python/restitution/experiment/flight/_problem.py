@@ -135,9 +135,8 @@ class Misfit:
         self.before_by, self.after_by = links.before_by[known], links.after_by[known]
         self.variances = links.variances
         self.shift = np.zeros_like(links.variances) if shift is None else shift
-        # Likelihood and information ask for all of these at each point of a search.
+        # Likelihood and information ask for these at each point of a search.
         self._jacobian = lru_cache(1)(self._jacobian_at)
-        self._covariance = lru_cache(1)(self._covariance_at)
         self._products = lru_cache(1)(self._products_at)
 
     @property
@@ -164,10 +163,7 @@ class Misfit:
 
     def covariance(self, values: Array, scatter: Scatter) -> Array:
         """Return the covariance of the residuals, shape (n, n)."""
-        return self._covariance(tuple(values), scatter)
-
-    def _covariance_at(self, values: tuple[float, ...], scatter: Scatter) -> Array:
-        by = self._jacobian(values)
+        by = self.jacobian(values)
         number = self.number
         own = np.diag(np.full(number.size, scatter.one**2)) + scatter.between**2 * (number[:, None] == number)
         if self.groups is not None:

@@ -146,46 +146,34 @@ def restitution(
     of_velocity = covariance(links.before_by, links.before_by, links.before, links.before)
     of_ratio = covariance(ratio_by, ratio_by, ratio, ratio)
     crossed = covariance(links.before_by, ratio_by, links.before, ratio)
-    one, two = ("impact",), ("impact", "other_impact")
+    velocity_error, ratio_error = np.sqrt(np.diag(of_velocity)), np.sqrt(np.diag(of_ratio))
     velocity = "normal velocity of the centre of mass towards the plane, before the impact"
+    crossing = "covariance of the velocity at impact and the coefficient at other_impact"
+    numbers = np.arange(instants.size)
     return xr.Dataset(
         {
-            "time": (one, instants, {"long_name": "time of the impact", "units": "s"}),
-            "uncertainty": (one, errors, {"long_name": "standard error of the time", "units": "s"}),
-            "impact_velocity": (one, links.before, {"long_name": velocity, "units": "m s-1", "symbol": "v"}),
-            "impact_velocity_error": (
-                one,
-                np.sqrt(np.diag(of_velocity)),
-                {"long_name": "standard error of the impact velocity", "units": "m s-1"},
+            "time": _told(instants, "s", long_name="time of the impact"),
+            "uncertainty": _told(errors, "s", long_name="standard error of the time"),
+            "impact_velocity": _told(links.before, "m s-1", long_name=velocity, symbol="v"),
+            "impact_velocity_error": _told(
+                velocity_error, "m s-1", long_name="standard error of the impact velocity"
             ),
-            "restitution": (
-                one,
-                ratio,
-                {"long_name": "coefficient of restitution", "units": "1", "symbol": "ε"},
+            "restitution": _told(ratio, "1", long_name="coefficient of restitution", symbol="ε"),
+            "restitution_error": _told(
+                ratio_error, "1", long_name="standard error of the coefficient of restitution"
             ),
-            "restitution_error": (
-                one,
-                np.sqrt(np.diag(of_ratio)),
-                {"long_name": "standard error of the coefficient of restitution", "units": "1"},
-            ),
-            "impact_velocity_covariance": (two, of_velocity, {"units": "m2 s-2"}),
-            "restitution_covariance": (two, of_ratio, {"units": "1"}),
-            "cross_covariance": (
-                two,
-                crossed,
-                {
-                    "long_name": "covariance of the velocity at impact and the coefficient at other_impact",
-                    "units": "m s-1",
-                },
-            ),
+            "impact_velocity_covariance": _told(of_velocity, "m2 s-2"),
+            "restitution_covariance": _told(of_ratio, "1"),
+            "cross_covariance": _told(crossed, "m s-1", long_name=crossing),
         },
         {
-            "impact": (one, np.arange(instants.size), {"long_name": "number of the impact, from 0"}),
-            "other_impact": (
-                ("other_impact",),
-                np.arange(instants.size),
-                {"long_name": "number of another impact, from 0"},
-            ),
+            "impact": ("impact", numbers, {"long_name": "number of the impact, from 0"}),
+            "other_impact": ("other_impact", numbers, {"long_name": "number of another impact, from 0"}),
         },
         attrs=attrs,
     )
+
+
+def _told(values: Array, units: str, **words: str) -> tuple[tuple[str, ...], Array, dict[str, str]]:
+    """Make a variable over impacts, or over pairs of them."""
+    return ("impact", "other_impact")[: values.ndim], values, {"units": units} | words

@@ -9,6 +9,7 @@ from pydantic import Field
 from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.arrays import real
 from restitution._internal.parameters import Number, ParameterError, Parameters, wrong
+from restitution.experiment.flight.drag import Ball
 from restitution.experiment.flight.times import LARGEST, LEAST
 
 _SOFTEST = 2e9
@@ -71,7 +72,7 @@ class ContactTime(Parameters):
         ValueError
             If a value is out of range.
         """
-        given = _Ball(diameter=diameter, mass=mass)
+        given = Ball(diameter=diameter, mass=mass)
         given_sides = {"ball": ball} if plate is None else {"ball": ball, "plate": plate}
         for name, one in given_sides.items():
             if not isinstance(one, dict):
@@ -108,11 +109,6 @@ class ContactTime(Parameters):
         stiffness = 4.0 * young * wall**2 / (radius * math.sqrt(3.0 * (1.0 - poisson**2)))
         heavy = mass or 4.0 * math.pi * radius**2 * wall * density
         return cls(at_1_m_s=0.0, uncertainty=math.pi * math.sqrt(heavy / stiffness))
-
-
-class _Ball(Parameters):
-    diameter: Annotated[Number, Field(ge=LEAST, le=LARGEST, description="m")]
-    mass: Annotated[Number, Field(ge=LEAST, le=LARGEST, description="kg")]
 
 
 class _Elastic(Parameters):

@@ -81,9 +81,14 @@ class Drag(Parameters):
         )
 
 
-class _Sphere(Parameters):
+class Ball(Parameters):
+    """Diameter and mass of a ball, of which numbers can be computed."""
+
     diameter: Annotated[Number, Field(ge=LEAST, le=LARGEST, description="m")]
     mass: Annotated[Number, Field(ge=LEAST, le=LARGEST, description="kg")]
+
+
+class _Sphere(Ball):
     coefficient: Annotated[Number, Field(ge=LEAST, le=LARGEST)]
     coefficient_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST)]
     air_density: Annotated[Number, Field(ge=LEAST, le=LARGEST, description="kg/m³")]

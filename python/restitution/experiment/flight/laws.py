@@ -69,12 +69,15 @@ def _power_start(speed: Array, ratio: Array) -> Array:
 
 
 def _viscoelastic(speed: Array, parameters: Array) -> Array:
-    # With these constants β is (3/2) A (docs/laws.md), and ε_n depends on nothing else.
-    dissipation = max(float(parameters[0]), 0.0) / 1.5
-    sphere = Viscoelastic(
-        young_modulus=math.pi, poisson_ratio=0.0, dissipation=dissipation, density=1.0, radius=1.0
+    return sphere_with(max(float(parameters[0]), 0.0))(speed)
+
+
+def sphere_with(beta: float) -> Viscoelastic:
+    """Return a sphere with this β in (s/m)^(1/5): ε_n depends on nothing else."""
+    # With these constants β is (3/2) A (docs/laws.md).
+    return Viscoelastic(
+        young_modulus=math.pi, poisson_ratio=0.0, dissipation=beta / 1.5, density=1.0, radius=1.0
     )
-    return sphere(speed)
 
 
 def _plastic(speed: Array, parameters: Array) -> Array:

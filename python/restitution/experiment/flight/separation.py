@@ -69,16 +69,15 @@ def separated(speed: Array, ratio: Array, by_times: Array) -> Separation:
     by_times : ndarray, shape (n, times)
         Derivatives of ε by the times.
     """
-    begin = "The times came without an uncertainty"
+
+    def told(words: str, timing: float = 0.0, scatter: float | Literal["fit"] = "fit") -> Separation:
+        return Separation(timing, scatter, f"The times came without an uncertainty; {words}.")
+
     law = np.stack([np.ones_like(speed), np.log(speed)], axis=1)
     free = np.linalg.qr(law, mode="complete")[0][:, 2:]
     number = free.shape[1]
     if number < _FEWEST:
-        return Separation(
-            0.0,
-            "fit",
-            f"{begin}; {ratio.size} coefficients do not separate their errors from a scatter of ε.",
-        )
+        return told(f"{ratio.size} coefficients do not separate their errors from a scatter of ε")
     reduced = free.T @ by_times
     eigenvalues, vectors = np.linalg.eigh(reduced @ reduced.T)
     mean = float(eigenvalues.mean())
@@ -86,7 +85,7 @@ def separated(speed: Array, ratio: Array, by_times: Array) -> Separation:
     relative = (1.0 - _SHARES[:, None]) * eigenvalues / mean + _SHARES[:, None]
     total = np.mean(components**2 / relative, axis=1)
     if not total.min() > 0.0:
-        return Separation(0.0, "fit", f"{begin}; the coefficients do not scatter.")
+        return told("the coefficients do not scatter")
     likelihood = -0.5 * (number * np.log(total) + np.sum(np.log(relative), axis=1))
     timing, scatter = np.sqrt((1.0 - _SHARES) * total / mean), np.sqrt(_SHARES * total)
     best = int(np.argmax(likelihood))
@@ -99,25 +98,24 @@ def separated(speed: Array, ratio: Array, by_times: Array) -> Separation:
         error = float(np.sqrt(np.linalg.inv(0.5 * slopes @ slopes.T)[0, 0]))
         found = _microseconds(timing[best], error)
         words = f"their standard error, fitted together with a scatter of ε, is {found}"
-        return Separation(float(timing[best]), "fit", f"{begin}; {words}.")
+        return told(words, float(timing[best]))
     if timed:
         error = float(timing[best] / np.sqrt(2.0 * number))
         weights = np.exp(likelihood - likelihood[best])
         likely = float(np.sqrt(np.average(scatter**2, weights=weights)))
         words = (
             f"their standard error, fitted to the scatter of the coefficients, is "
-            f"{_microseconds(timing[best], error)}, and ε itself scatters by less than {digits(most_scatter)}"
+            f"{_microseconds(timing[best], error)}, and ε itself scatters by less than "
+            f"{digits(most_scatter)} (95 %)"
         )
-        return Separation(float(timing[best]), likely, f"{begin}; {words} (95 %).")
+        return told(words, float(timing[best]), likely)
     if scatters:
-        words = f"ε itself scatters, and the times err by less than {digits(most_timing)} µs"
-        return Separation(0.0, "fit", f"{begin}; {words} (95 %).")
-    words = (
+        return told(f"ε itself scatters, and the times err by less than {digits(most_timing)} µs (95 %)")
+    return told(
         f"the scatter of the coefficients may be that of ε, up to {digits(most_scatter)}, or that of "
         f"times with a standard error of up to {digits(most_timing)} µs: {ratio.size} coefficients do not "
         "separate the two"
     )
-    return Separation(0.0, "fit", f"{begin}; {words}.")
 
 
 def _microseconds(timing: float, error: float) -> str:

@@ -56,10 +56,6 @@ class Table:
         """Interpolate linearly."""
         return RegularGridInterpolator(self.axes, self.values)
 
-    def at_friction(self, place: int) -> "Table":
-        """Return the likelihood at one end of the friction, 0 or -1, the last axis."""
-        return replace(self, axes=self.axes[:-1], values=self.values[..., place])
-
     def draws(self, number: int, rng: np.random.Generator) -> tuple[Array, Array]:
         """Return independent draws of exp of what is interpolated, and ln of it: shapes (n, p) and (n,).
 
@@ -151,13 +147,11 @@ def table(
     noise = [one.noise(_NOISES * particles, seed + 7 * k) for k, one in enumerate(series)]
     unseen = max(_NO_SCATTER, min(one.unseen for one in series))
     widths = [0.0 if scatter is None or scatter <= unseen else scatter for scatter in scatters]
+    distinct, places = np.unique(widths, return_inverse=True)
     densities: list[list[Density]] = []
     for x, mu in product(nodes, frictions):
         flights = [simulated(one, middle, float(x), mu, seed + 7 * k) for k, one in enumerate(series)]
-        for place, width in enumerate(widths):
-            if place > 0 and width == widths[place - 1]:
-                densities.append(densities[-1])
-                continue
+        for width in distinct:
             drops = zip(series, flights, noise, strict=True)
             densities.append(
                 [Density(one.heard(flight, width, off), middle, one.observed) for one, flight, off in drops]
@@ -172,17 +166,13 @@ def table(
     steep = np.arcsinh(6.0 * width / narrow)
     grid = middle + narrow * np.sinh(steep * np.linspace(-1.0, 1.0, _GRID))
     grid = np.unique(np.clip(grid, low, high))
-    logs = np.empty((len(densities), grid.size))
-    for number, each in enumerate(densities):
-        if number > 0 and each is densities[number - 1]:
-            logs[number] = logs[number - 1]
-        else:
-            logs[number] = averaged(together(each, series, grid, taus), weights)
+    logs = np.array([averaged(together(each, series, grid, taus), weights) for each in densities])
     best = densities[int(np.argmax(logs.max(axis=1)))]
     shares = np.array([d.beyond(one.observed) for d, one in zip(best, series, strict=True)])
     signs = np.minimum(1.0, len(shares) * shares.min(axis=0))  # the least of several
     # Of one simulated drop, timed several times, the numbers are nearly the same.
     variance = _NOISES * sum(d.variance(one.observed) for d, one in zip(best, series, strict=True))
+    logs = logs.reshape(-1, distinct.size, grid.size)[:, places].reshape(-1, grid.size)
     values = logs.T.reshape(grid.size, len(nodes), len(frictions), len(scatters)).swapaxes(2, 3)
     axes: list[Array] = [grid, np.log(nodes)]
     values, axes[1] = _finer(values, axes[1], 1)
@@ -213,9 +203,7 @@ def _widths(series: Sequence[Series], densities: list[list[Density]]) -> tuple[f
     """
     offsets = np.linspace(-3.0, 3.0, 25)
     best, scales = [], []
-    for number, each in enumerate(densities):
-        if number > 0 and each is densities[number - 1]:
-            continue
+    for each in densities:
         if not all(one.enough for one in each):
             continue
         own = [d(one.observed, d.truths(one.observed, offsets)) for d, one in zip(each, series, strict=True)]

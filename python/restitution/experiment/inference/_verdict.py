@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -227,7 +228,5 @@ def sentence(
 def _with_each_friction(found: Table) -> list[float]:
     """Return the median of what the second axis is the logarithm of, without friction and sticking."""
     rng = np.random.default_rng(1)
-    return [
-        float(np.exp(np.median(found.at_friction(end).draws(_DRAWS, rng)[0][:, _ELONGATION])))
-        for end in (0, -1)
-    ]
+    ends = (replace(found, axes=found.axes[:-1], values=found.values[..., end]) for end in (0, -1))
+    return [float(np.exp(np.median(end.draws(_DRAWS, rng)[0][:, _ELONGATION]))) for end in ends]

@@ -1,34 +1,25 @@
 """Analysis of a recording: impacts, coefficients, laws, and warnings."""
 
-import csv
-import io
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, Self
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
-from pydantic import Field, model_validator
 
 from restitution import flight
 from restitution._internal.datasets import Content
 from restitution._internal.files import path_from
-from restitution._internal.parameters import (
-    Allowed,
-    Number,
-    ParameterError,
-    Problem,
-    TooLargeError,
-    wrong,
-)
+from restitution._internal.parameters import ParameterError, Problem, TooLargeError, wrong
 from restitution._internal.text import digits, with_error
-from restitution.bodies import Wall, from_roundness
+from restitution.bodies import from_roundness
 from restitution.experiment.flight.chain import measured_of
+from restitution.experiment.flight.laws import LAWS
 from restitution.experiment.flight.separation import KNOWN, Separation, separation
-from restitution.experiment.flight.setting import Gravity
 from restitution.experiment.flight.times import DOUBLED, DOUBTFUL, FLAGS, GOOD
+from restitution.experiment.listen._setting import Setting, checked
 from restitution.experiment.listen._shape import Shape, shape
 from restitution.experiment.sound import impacts
 
@@ -40,10 +31,6 @@ _EXPLAINED = 0.01
 """Probability of a law from which on errors of measurement explain all scatter."""
 _BETTER = 6.0
 """In Akaike's criterion, from which on a law is said to fit better than a constant."""
-_HEAVIEST = 23_000.0
-"""In kg/m³: no matter is denser, so that a mass beyond it was in g."""
-_LARGEST = 1.0
-"""Diameter in m of balls that are bounced; beyond it was in mm."""
 _FIRST = 0.3
 """The first ε over the later ones, below which the drop was not in m."""
 _LIGHT = 500.0
@@ -54,89 +41,15 @@ _OFTEN_LOSSY = (".m4a", ".mp4")
 """And of those that are, unless they are Apple Lossless."""
 _TABLES = (".csv", ".tsv", ".txt", ".xls", ".xlsx", ".zip")
 """Endings of files that hold times of impacts."""
-_LAWS = ("constant", "power law", "viscoelastic", "plastic")
-
-
-_OR_NONE = Allowed("a finite number > 0 (SI units), or None")
-_LENGTH_OR_NONE = Allowed("a finite number >= 0 (m), or None")
-_CONTACT_OR_NONE = Allowed("a finite number >= 0 (s), or None")
-_TIME_OR_NONE = Allowed("a finite number > 0 (s), or None")
-
-
-class Setting(Gravity):
-    """Knowledge of the experiment besides the recording.
-
-    Parameters
-    ----------
-    diameter : float
-        Of the ball, in m.
-    mass : float, optional
-        In kg; then air drag is taken into account.
-    drop, drop_uncertainty : float, optional
-        Height of the fall before the first impact heard, and its standard error, in m.
-    time_uncertainty : float, optional
-        Standard error of the times of a table that does not give it, in s.
-    gravity, gravity_uncertainty : float
-        g and its standard error, in m/s²; left out 3e-3 of g, which covers the surface of the Earth, 9.78 to
-        9.83.
-    clock_uncertainty : float
-        Standard error of the clock over what it shows.
-    out_of_roundness, roughness : float, optional
-        Of the ball, the second as Ra, in m, where they were measured.
-    wall : float, optional
-        Thickness of the wall of a hollow ball, in m.
-    contact_time, contact_uncertainty : float, optional
-        How long ball and plate touch at 1 m/s, and its standard error, in s. Left out, it may be anything up
-        to what it is for hard plastics.
-    doubtful : bool
-        Whether impacts that are in doubt count.
-    """
-
-    diameter: Annotated[Number, Field(gt=0, description="m")]
-    mass: Annotated[Number | None, Field(gt=0, description="kg"), _OR_NONE] = None
-    drop: Annotated[Number | None, Field(gt=0, description="m"), _OR_NONE] = None
-    drop_uncertainty: Annotated[Number, Field(ge=0, description="m")] = 0.0
-    time_uncertainty: Annotated[Number | None, Field(gt=0, description="s"), _TIME_OR_NONE] = None
-    out_of_roundness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
-    roughness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
-    wall: Wall = None
-    contact_time: Annotated[Number | None, Field(ge=0, description="s"), _CONTACT_OR_NONE] = None
-    contact_uncertainty: Annotated[Number, Field(ge=0, description="s")] = 0.0
-    doubtful: bool = False
-
-    @model_validator(mode="after")
-    def _in_other_units(self) -> Self:
-        if self.diameter >= _LARGEST:
-            asked = f"in m, below {_LARGEST:g}; {self.diameter:g} mm are {1e-3 * self.diameter:g}"
-            raise ParameterError(wrong("diameter", self.diameter, asked))
-        if self.mass is not None:
-            density = self.mass / from_roundness(self.diameter, 0.0, density=1.0).mass
-            if density > _HEAVIEST:
-                asked = (
-                    f"in kg, of a density up to {_HEAVIEST:g} kg/m³; {self.mass:g} g are {1e-3 * self.mass:g}"
-                )
-                raise ParameterError(wrong("mass", self.mass, asked))
-        return self
-
-    @model_validator(mode="after")
-    def _nearly_round(self) -> Self:
-        if self.out_of_roundness is not None or self.wall is not None:
-            from_roundness(self.diameter, self.out_of_roundness or 0.0, wall=self.wall)
-        return self
-
-    @property
-    def contact(self) -> flight.ContactTime:
-        """Time of contact, with a standard error; of what it may be where it is not known."""
-        if self.contact_time is None:
-            return flight.ContactTime.possible(diameter=self.diameter, mass=self.mass, wall=self.wall)
-        return flight.ContactTime(at_1_m_s=self.contact_time, uncertainty=self.contact_uncertainty)
-
-    @property
-    def drag(self) -> flight.Drag | None:
-        """Air drag of a sphere, where the mass is known."""
-        if self.mass is None:
-            return None
-        return flight.Drag.of_sphere(diameter=self.diameter, mass=self.mass, gravity=self.gravity)
+_UNITS = {
+    "time": "s",
+    "uncertainty": "s",
+    "impact_velocity": "m/s",
+    "impact_velocity_error": "m/s",
+    "restitution": "1",
+    "restitution_error": "1",
+}
+"""Of the columns of the table with a line for each impact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -331,17 +244,16 @@ class Analysis(Content):
                 table[name].attrs = variable.attrs
         rows = table.sizes["impact"]
         names = ("impact_velocity", "impact_velocity_error", "restitution", "restitution_error")
-        columns = {name: np.full(rows, np.nan) for name in names}
-        covariance = np.full((rows, rows), np.nan)
+        for name in names:
+            table[name] = ("impact", np.full(rows, np.nan), self.series[0].data[name].attrs)
+        none = np.full((rows, rows), np.nan)
+        table["restitution_covariance"] = (("impact", "other_impact"), none, {"units": "1"})
         for one in self.series:
             places = np.flatnonzero((table.series == one.number) & (table.flag != DOUBLED))
             for name in names:
-                columns[name][places] = one.data[name].values
-            covariance[np.ix_(places, places)] = one.data.restitution_covariance.values
-        first = self.series[0].data
-        for name in names:
-            table[name] = ("impact", columns[name], first[name].attrs)
-        table["restitution_covariance"] = (("impact", "other_impact"), covariance, {"units": "1"})
+                table[name].values[places] = one.data[name].values
+            covariance = one.data.restitution_covariance.values
+            table.restitution_covariance.values[np.ix_(places, places)] = covariance
         known = {name: value for name, value in self.setting.model_dump().items() if value is not None}
         table.attrs |= known | {"doubtful": int(self.setting.doubtful)}
         table.attrs["gravity_uncertainty"] = self.setting.gravity_error
@@ -350,35 +262,15 @@ class Analysis(Content):
     def csv(self) -> str:
         """Write a line for each impact; `flight.read` reads the times of a single series back."""
         data = self.dataset()
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        names = (
-            "time",
-            "uncertainty",
-            "impact_velocity",
-            "impact_velocity_error",
-            "restitution",
-            "restitution_error",
-        )
-        units = ("s", "s", "m/s", "m/s", "1", "1")
-        several = len(self.recordings) > 1
-        writer.writerow(
-            [
-                *["file"] * several,
-                "series",
-                "flag",
-                *(f"{name.replace('_', ' ')} ({unit})" for name, unit in zip(names, units, strict=True)),
-            ]
-        )
-        for place in range(data.sizes["impact"]):
-            one = data.isel(impact=place)
-            if int(one.flag) == DOUBLED:
-                continue
-            values = [float(one[name]) for name in names]
-            numbers = ["" if math.isnan(value) else f"{value:.9g}" for value in values]
-            file = [self.named(self.recordings[int(one.file)])] if several else []
-            writer.writerow([*file, int(one.series), FLAGS[int(one.flag)], *numbers])
-        return text.getvalue()
+        data = data.isel(impact=np.flatnonzero(data.flag != DOUBLED))
+        data["flag"] = ("impact", [FLAGS[flag] for flag in data.flag.values])
+        columns = {name: name for name in ("series", "flag")}
+        if len(self.recordings) > 1:
+            data["file"] = ("impact", [self.named(self.recordings[number]) for number in data.file.values])
+            columns = {"file": "file"} | columns
+        columns |= {name: f"{name.replace('_', ' ')} ({unit})" for name, unit in _UNITS.items()}
+        table = data[list(columns)].to_dataframe().rename(columns=columns)
+        return str(table.to_csv(index=False, float_format="%.9g", lineterminator="\n"))
 
 
 def paths_of(file: Any) -> list[Path]:
@@ -417,9 +309,7 @@ def analyse(file: Path | Sequence[Path], setting: Setting) -> Analysis:
     together = _together(several, setting) if len(several) > 1 else None
     if together is None:
         recordings = tuple(
-            one._replace(
-                series=tuple(replace(s, shape=_shape([s.data], s.fits, setting)) for s in one.series)
-            )
+            one._replace(series=tuple(replace(s, shape=shape([s.data], s.fits, setting)) for s in one.series))
             for one in recordings
         )
     analysis = Analysis(setting, recordings, together, ())
@@ -438,12 +328,6 @@ def _heard(file: Path, setting: Setting) -> tuple[xr.Dataset, Separation]:
             Problem(str(file), ": a recording, in which errors of times are found, not given")
         )
     return impacts(file), KNOWN
-
-
-def checked(setting: object) -> None:
-    """Refuse what is no setting."""
-    if not isinstance(setting, Setting):
-        raise ParameterError(wrong("setting", setting, "a Setting"))
 
 
 def heard_in(heard: xr.Dataset) -> bool:
@@ -479,12 +363,12 @@ def _series(heard: xr.Dataset, number: int, setting: Setting, told: Separation, 
         _check_drop(data, setting)
     known = int(np.isfinite(data.restitution).sum())
     timed = bool(data.uncertainty.fillna(0.0).any())
-    fits = _fitted(data, told.scatter) if timed and known >= 3 else []
+    fits = _fitted(data, told.scatter) if timed and known >= 3 else ()
     if known >= _FEWEST_FOR_SCATTER and not any(fit.p_value > _EXPLAINED for fit in fits):
         fits = _fitted(data, "fit")
     if not any(fit.law == "constant" for fit in fits):
-        fits = []
-    return Series(number, rows, data, _ordered(fits), None, told.words)
+        fits = ()
+    return Series(number, rows, data, fits, None, told.words)
 
 
 def _together(found: list[tuple[Series, Path]], setting: Setting) -> Series:
@@ -495,30 +379,10 @@ def _together(found: list[tuple[Series, Path]], setting: Setting) -> Series:
     data = xr.concat(
         [one.drop_dims("other_impact") for one in parts], "impact", combine_attrs="drop_conflicts"
     )
-    fits = _ordered(_fitted(parts, "fit", folders))
+    fits = _fitted(parts, "fit", folders)
     heard = xr.concat([one.heard for one in several], "impact", combine_attrs="override")
-    shape = _shape(parts, fits, setting) if tables == 1 else None
-    return Series(0, heard, data, fits, shape, drops=len(several), tables=tables)
-
-
-def _ordered(fits: list[flight.LawFit]) -> tuple[flight.LawFit, ...]:
-    return tuple(sorted(fits, key=lambda fit: fit.aic))
-
-
-def _shape(drops: list[xr.Dataset], fits: tuple[flight.LawFit, ...], setting: Setting) -> Shape | None:
-    if not all(one.uncertainty.fillna(0.0).any() for one in drops):
-        return None
-    return shape(
-        drops,
-        fits,
-        diameter=setting.diameter,
-        mass=setting.mass,
-        out_of_roundness=setting.out_of_roundness,
-        roughness=setting.roughness,
-        wall=setting.wall,
-        drag=setting.drag,
-        contact=setting.contact,
-    )
+    of_all = shape(parts, fits, setting) if tables == 1 else None
+    return Series(0, heard, data, fits, of_all, drops=len(several), tables=tables)
 
 
 def _coefficients(rows: xr.Dataset, setting: Setting, *, first: bool) -> xr.Dataset:
@@ -540,17 +404,17 @@ def _fitted(
     data: xr.Dataset | list[xr.Dataset],
     scatter: float | Literal["fit"],
     groups: Sequence[Path] | None = None,
-) -> list[flight.LawFit]:
-    """Fit all laws that the number and errors of the coefficients allow."""
+) -> tuple[flight.LawFit, ...]:
+    """Fit all laws that the number and errors of the coefficients allow; the best comes first."""
     fits = []
-    for law in _LAWS:
+    for law in LAWS:
         try:
             fits.append(flight.fit(data, law, scatter=scatter, groups=groups))
         except TooLargeError:
             raise
         except ParameterError:  # too few coefficients for this one
             continue
-    return fits
+    return tuple(sorted(fits, key=lambda fit: fit.aic))
 
 
 def _check_drop(first: xr.Dataset, setting: Setting) -> None:

@@ -1,5 +1,6 @@
 """The report as one page that needs nothing else, with a table and a netCDF file beside it."""
 
+import math
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -17,14 +18,13 @@ from restitution.experiment.listen._analysis import (
     Analysis,
     Recording,
     Series,
-    Setting,
     analyse,
-    checked,
     heard_in,
     paths_of,
     spread,
 )
 from restitution.experiment.listen._figures import close_ups, drawn_shape, waveform
+from restitution.experiment.listen._setting import Setting, checked
 from restitution.experiment.listen._shape import Shape
 from restitution.figures.report import Section, drawing, page, paragraph, prose, table, text
 
@@ -262,21 +262,25 @@ def _budget(found: Shape) -> list[str]:
 
 def _impacts(analysis: Analysis) -> str:
     data = analysis.dataset()
-    rows = []
-    for place in range(data.sizes["impact"]):
-        one = data.isel(impact=place)
-        if int(one.flag) == DOUBLED:
-            continue
-        known = [
-            with_error(float(one[name]), float(one[error])) if float(one[name]) == float(one[name]) else "–"
-            for name, error in (
-                ("impact_velocity", "impact_velocity_error"),
-                ("restitution", "restitution_error"),
-            )
-        ]
-        time = float(one.time)
-        shown = "–" if time != time else f"{time:.6f}"
-        error = "–" if time != time else digits(1e6 * float(one.uncertainty))
-        rows.append([str(place), str(int(one.series)), FLAGS[int(one.flag)], shown, error, *known])
+    shown = np.flatnonzero(data.flag != DOUBLED)
+    data = data.isel(impact=shown)
+
+    def written(name: str) -> list[str]:
+        """Write numbers with their errors."""
+        pairs = zip(data[name].values.tolist(), data[f"{name}_error"].values.tolist(), strict=True)
+        return ["–" if math.isnan(value) else with_error(value, error) for value, error in pairs]
+
+    times = data.time.values.tolist()
+    errors = zip(times, data.uncertainty.values.tolist(), strict=True)
+    rows = zip(
+        map(str, shown),
+        map(str, data.series.values),
+        [FLAGS[flag] for flag in data.flag.values],
+        ["–" if math.isnan(time) else f"{time:.6f}" for time in times],
+        ["–" if math.isnan(time) else digits(1e6 * error) for time, error in errors],
+        written("impact_velocity"),
+        written("restitution"),
+        strict=True,
+    )
     head = ["row", "series", "flag", "time (s)", "error (µs)", "v (m/s)", "ε"]
     return table(head, rows, caption="All impacts, with their standard errors", numbers=(3, 4, 5, 6))

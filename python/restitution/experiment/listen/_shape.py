@@ -14,12 +14,12 @@ from restitution._internal.parameters import ParameterError, TooLargeError
 from restitution._internal.text import digits
 from restitution.bodies import Form, from_roundness
 from restitution.experiment.budget import ErrorBudget, error_budget
-from restitution.experiment.budget.experiment import ROUGHEST
-from restitution.experiment.flight.contact import ContactTime
-from restitution.experiment.flight.drag import Drag
+from restitution.experiment.budget.experiment import ROUGHEST, at
+from restitution.experiment.flight.laws import sphere_with
 from restitution.experiment.inference import posterior
 from restitution.experiment.listen._agreement import compared, disagreement
-from restitution.laws import Frictionless, Plastic, Viscoelastic
+from restitution.experiment.listen._setting import Setting
+from restitution.laws import Frictionless, Plastic
 
 _PARTICLES = 300
 _APART = 5e-3
@@ -61,19 +61,13 @@ class Shape(Content):
         return self.draws is not None and self.draws.attrs["explained_by"] not in ("neither", "material")
 
 
-def shape(
-    drops: list[xr.Dataset],
-    fits: tuple[flight.LawFit, ...],
-    *,
-    diameter: float,
-    mass: float | None,
-    out_of_roundness: float | None,
-    roughness: float | None,
-    wall: float | None,
-    drag: Drag | None,
-    contact: ContactTime,
-) -> Shape | None:
-    """Infer a ball's shape from its drops, and budget the errors of one; None where no law was fitted."""
+def shape(drops: list[xr.Dataset], fits: tuple[flight.LawFit, ...], setting: Setting) -> Shape | None:
+    """Infer a ball's shape from its drops, and budget the errors of one.
+
+    None where no law was fitted, or the errors of the times are not known.
+    """
+    if not all(one.uncertainty.fillna(0.0).any() for one in drops):
+        return None
     data = drops[0]
     found = _law(fits, np.concatenate([one.impact_velocity.values for one in drops]))
     if found is None:
@@ -88,10 +82,10 @@ def shape(
             draws = posterior(
                 drops if len(drops) > 1 else data,
                 law.normal,
-                diameter=diameter,
-                wall=wall,
-                out_of_roundness=out_of_roundness,
-                roughness=roughness,
+                diameter=setting.diameter,
+                wall=setting.wall,
+                out_of_roundness=setting.out_of_roundness,
+                roughness=setting.roughness,
                 particles=_PARTICLES,
             )
             verdict = str(draws.attrs["verdict"])
@@ -99,11 +93,14 @@ def shape(
             raise
         except ParameterError as error:
             verdict = f"No shape is inferred: {error}."
-    t, ra, assumed = _surface(out_of_roundness, roughness, draws)
+    t, ra, assumed = _surface(setting.out_of_roundness, setting.roughness, draws)
     form: Form = "dumbbell" if draws is None else draws.attrs["form"]
     if t is None:
         return Shape(law, draws, verdict, None, assumed)
-    density = 2500.0 if mass is None else mass / from_roundness(diameter, 0.0, density=1.0, wall=wall).mass
+    diameter, wall, drag = setting.diameter, setting.wall, setting.drag
+    density = 2500.0
+    if setting.mass is not None:
+        density = setting.mass / from_roundness(diameter, 0.0, density=1.0, wall=wall).mass
     try:
         budget = error_budget(
             from_roundness(diameter, t, density=density, form=form, wall=wall),
@@ -118,7 +115,7 @@ def shape(
             drop_uncertainty=float(data.attrs.get("drop_height_uncertainty", 0.0)),
             drag=drag,
             drag_corrected=drag is not None,
-            contact_time=contact,
+            contact_time=setting.contact,
             contact_corrected=True,
         )
     except TooLargeError:
@@ -127,7 +124,8 @@ def shape(
         return Shape(law, draws, verdict, None, f"No budget of errors: {error}.")
     if len(drops) > 1:  # whose mean the budget of one drop is not about
         return Shape(law, draws, verdict, budget, assumed)
-    numbers = list(compared(data, fits, budget, _material(draws), measured=out_of_roundness is not None))
+    measured = setting.out_of_roundness is not None
+    numbers = list(compared(data, fits, budget, _material(draws), measured=measured))
     return Shape(law, draws, verdict, budget, assumed, disagreement(numbers))
 
 
@@ -149,11 +147,7 @@ def _law(fits: tuple[flight.LawFit, ...], speed: Array) -> tuple[Frictionless, f
         if fit.law == "plastic":
             return Frictionless(normal=Plastic(yield_speed=value)), apart
         if fit.law == "viscoelastic" and value > 0.0:
-            # With these constants β is (3/2) A, and ε_n depends on nothing else.
-            rubber = Viscoelastic(
-                young_modulus=np.pi, poisson_ratio=0.0, dissipation=value / 1.5, density=1.0, radius=1.0
-            )
-            return Frictionless(normal=rubber), apart
+            return Frictionless(normal=sphere_with(value)), apart
     return None
 
 
@@ -191,6 +185,4 @@ def _drop(data: xr.Dataset, law: Frictionless) -> float:
         return float(data.attrs["drop_height"])
     intervals = np.diff(data.time.values)
     up = 0.5 * float(data.attrs["gravity"]) * float(intervals[np.isfinite(intervals)][0])
-    normal = law.normal
-    ratio = normal if isinstance(normal, float) else float(normal(up))
-    return (up / ratio) ** 2 / (2.0 * float(data.attrs["gravity"]))
+    return (up / float(at(law, np.array(up)))) ** 2 / (2.0 * float(data.attrs["gravity"]))
