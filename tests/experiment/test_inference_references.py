@@ -45,10 +45,6 @@ def test_a_family_changes_what_is_inferred_and_keeps_the_rest() -> None:
         given: Any = form
         family = Family(turned, 6e-3, given, lobes)
         assert family.body(0.1) == rs.from_roundness(6e-3, 0.25 * 0.1 * 6e-3, form=given, lobes=lobes)
-    constant.check_friction((0.0, 0.4))
-    metal.check_friction(None)
-    with pytest.raises(ValueError, match=r"^friction: given for a Frictionless; only a Coulomb law has it"):
-        metal.check_friction((0.0, 0.4))
 
 
 def known_numbers(seed: int = 3) -> np.ndarray:

@@ -11,7 +11,8 @@ from restitution._internal.arrays import real
 from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.bodies import GRADES
-from restitution.figures.style import Style
+from restitution.figures.pieces import plain_log
+from restitution.figures.style import Style, colors, column, ink, panels, styled
 
 
 class _Look(NamedTuple):
@@ -105,6 +106,7 @@ class ErrorBudget(Content):
         about = f"{data.attrs['impacts']} coefficients from a drop of {data.attrs['drop']:g} m"
         return f"Error budget, bias ± standard deviation: {about}\n{self.table()}"
 
+    @styled
     def figure(self, *, style: Style | None = None) -> Figure:
         """Draw the root mean square error √(bias² + variance) of one ε by source, against the speed.
 
@@ -116,35 +118,26 @@ class ErrorBudget(Content):
         style : str, optional
             "paper", "page" or "slides", with "-dark" for a dark ground.
         """
-        from restitution.figures.pieces import plain_log
-        from restitution.figures.style import colors, column, ink, panels, styled
-
-        @styled
-        def drawn(*, style: Style | None) -> Figure:
-            figure, [[axes]] = panels(*column(3.0))
-            speed = self.data.impact_velocity.values
-            total = self.data.sel(source="total")
-            least = _DRAWN * float(np.hypot(total.standard_deviation, total.bias).max())
-            for source, look in _SOURCES.items():
-                one = self.data.sel(source=source)
-                known = one.standard_deviation > 2.0 * one.standard_deviation_error
-                biased = np.abs(one.bias) > 2.0 * one.bias_error
-                error = np.hypot(
-                    np.where(known, one.standard_deviation, 0.0), np.where(biased, one.bias, 0.0)
-                )
-                shown = error > least
-                if shown.any():
-                    name = self._named(source)
-                    color = ink(look.grey) if look.color is None else colors()[look.color]
-                    axes.plot(speed[shown], error[shown], color=color, marker=look.marker, label=name)
-            axes.set_yscale("log")
-            plain_log(axes, [tick for tick in _TICKS if speed.min() <= tick <= speed.max()])
-            axes.set_xlabel(r"impact velocity $v$ (m/s)")
-            axes.set_ylabel(r"error of one $\varepsilon$")
-            figure.legend(loc="outside upper center", ncols=3)
-            return figure
-
-        return drawn(style=style)
+        figure, [[axes]] = panels(*column(3.0))
+        speed = self.data.impact_velocity.values
+        total = self.data.sel(source="total")
+        least = _DRAWN * float(np.hypot(total.standard_deviation, total.bias).max())
+        for source, look in _SOURCES.items():
+            one = self.data.sel(source=source)
+            known = one.standard_deviation > 2.0 * one.standard_deviation_error
+            biased = np.abs(one.bias) > 2.0 * one.bias_error
+            error = np.hypot(np.where(known, one.standard_deviation, 0.0), np.where(biased, one.bias, 0.0))
+            shown = error > least
+            if shown.any():
+                name = self._named(source)
+                color = ink(look.grey) if look.color is None else colors()[look.color]
+                axes.plot(speed[shown], error[shown], color=color, marker=look.marker, label=name)
+        axes.set_yscale("log")
+        plain_log(axes, [tick for tick in _TICKS if speed.min() <= tick <= speed.max()])
+        axes.set_xlabel(r"impact velocity $v$ (m/s)")
+        axes.set_ylabel(r"error of one $\varepsilon$")
+        figure.legend(loc="outside upper center", ncols=3)
+        return figure
 
 
 def _cell(one: xr.Dataset, prefix: str) -> str:
@@ -245,6 +238,7 @@ class RequiredRoundness(Content):
             f"of {1e3 * diameter:g} mm{grade}"
         )
 
+    @styled
     def figure(self, *, style: Style | None = None) -> Figure:
         """Draw the errors against the out-of-roundness, with the grades of ball bearings above.
 
@@ -253,30 +247,24 @@ class RequiredRoundness(Content):
         style : str, optional
             "paper", "page" or "slides", with "-dark" for a dark ground.
         """
-        from restitution.figures.style import colors, column, ink, panels, styled
-
-        @styled
-        def drawn(*, style: Style | None) -> Figure:
-            figure, [[axes]] = panels(*column(3.0))
-            deviation = self.data.out_of_roundness.values * 1e6
-            names = {"single": "one impact", "mean": "mean of a run", "fit": r"fitted $\varepsilon^n(v)$"}
-            for number, (name, label) in enumerate(names.items()):
-                dashes = ("-", "--", ":")[number]
-                axes.loglog(deviation, self.data[name], dashes, color=colors()[number], label=label)
-            axes.axhline(self.precision, color=ink(0.4))
-            axes.set_xlim(deviation[0], deviation[-1])
-            axes.set_xlabel("out-of-roundness (µm)")
-            axes.set_ylabel(r"error of $\varepsilon$ over $\varepsilon$")
-            axes.legend(loc="upper left")
-            above = axes.secondary_xaxis("top")
-            inside = {g: 1e6 * t for g, t in GRADES.items() if deviation[0] <= 1e6 * t <= deviation[-1]}
-            chosen = [g for g in (3, 10, 28, 100, 1000) if g in inside]
-            above.set_xticks([inside[g] for g in chosen], [str(g) for g in chosen])
-            above.minorticks_off()
-            above.set_xlabel("grade of ball bearings")
-            return figure
-
-        return drawn(style=style)
+        figure, [[axes]] = panels(*column(3.0))
+        deviation = self.data.out_of_roundness.values * 1e6
+        names = {"single": "one impact", "mean": "mean of a run", "fit": r"fitted $\varepsilon^n(v)$"}
+        for number, (name, label) in enumerate(names.items()):
+            dashes = ("-", "--", ":")[number]
+            axes.loglog(deviation, self.data[name], dashes, color=colors()[number], label=label)
+        axes.axhline(self.precision, color=ink(0.4))
+        axes.set_xlim(deviation[0], deviation[-1])
+        axes.set_xlabel("out-of-roundness (µm)")
+        axes.set_ylabel(r"error of $\varepsilon$ over $\varepsilon$")
+        axes.legend(loc="upper left")
+        above = axes.secondary_xaxis("top")
+        inside = {g: 1e6 * t for g, t in GRADES.items() if deviation[0] <= 1e6 * t <= deviation[-1]}
+        chosen = [g for g in (3, 10, 28, 100, 1000) if g in inside]
+        above.set_xticks([inside[g] for g in chosen], [str(g) for g in chosen])
+        above.minorticks_off()
+        above.set_xlabel("grade of ball bearings")
+        return figure
 
 
 def _length(value: float, diameter: float) -> str:

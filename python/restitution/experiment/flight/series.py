@@ -33,14 +33,11 @@ def series_of(data: Any, *needed: str) -> dict[str, xr.Dataset]:
         raise ParameterError(wrong("data", data, "a Dataset of flight.restitution, or several"))
     named = {"data": data} if isinstance(data, xr.Dataset) else {}
     named = named or {f"data[{k}]": one for k, one in enumerate(several)}
+    pairs = ("impact", "other_impact")
+    dimensions = {each: pairs if each.endswith("_covariance") else pairs[:1] for each in needed}
     for name, one in named.items():
-        dimensions = {each: _dimensions(each) for each in needed}
         for each, values in zip(needed, variables(name, one, "flight.restitution", dimensions), strict=True):
             check_each(f"{name}.{each}", values, ~np.isinf(values), "finite, or NaN for what is not known")
             if each.endswith("_error"):
                 check_each(f"{name}.{each}", values, ~(values < 0.0), "a standard error >= 0, or NaN")
     return named
-
-
-def _dimensions(variable: str) -> tuple[str, ...]:
-    return ("impact", "other_impact") if variable.endswith("_covariance") else ("impact",)

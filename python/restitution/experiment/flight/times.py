@@ -8,7 +8,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.arrays import FloatArray as Array
-from restitution._internal.arrays import reals
+from restitution._internal.arrays import check_each, reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.drop.recorded import check_successive, check_variables
 
@@ -72,25 +72,16 @@ def check_series(instants: Array, errors: Array, times: str, uncertainty: str) -
     if errors.shape != instants.shape:
         allowed = f"one number, or one for each of the {instants.size} times"
         raise ParameterError(Problem(uncertainty, f": an array of shape {errors.shape}; must be {allowed}"))
-    known = np.flatnonzero(~np.isnan(instants))
+    missed = np.isnan(instants)
+    known = np.flatnonzero(~missed)
     if known.size < 2:
         raise ParameterError(
             Problem(times, f": {known.size} of {instants.size} are numbers; at least two must be")
         )
-    bad = known[~((errors[known] >= 0.0) & (errors[known] <= LARGEST))]
-    if bad.size:
-        raise ParameterError(
-            wrong(f"{uncertainty}[{bad[0]}]", float(errors[bad[0]]), f"a number in [0, {LARGEST:g}] (s)")
-        )
-    infinite = known[~(np.abs(instants[known]) <= LARGEST)]
-    if infinite.size:
-        raise ParameterError(
-            wrong(
-                f"{times}[{infinite[0]}]",
-                float(instants[infinite[0]]),
-                f"at most {LARGEST:g} s either way, or NaN",
-            )
-        )
+    good = missed | ((errors >= 0.0) & (errors <= LARGEST))
+    check_each(uncertainty, errors, good, f"a number in [0, {LARGEST:g}] (s)")
+    good = missed | (np.abs(instants) <= LARGEST)
+    check_each(times, instants, good, f"at most {LARGEST:g} s either way, or NaN")
     for earlier, later in pairwise(known):
         # Ratios and squares of shorter intervals are no numbers that a double holds.
         if not instants[later] - instants[earlier] >= LEAST:
@@ -98,7 +89,7 @@ def check_series(instants: Array, errors: Array, times: str, uncertainty: str) -
             if instants[later] > instants[earlier]:
                 allowed += f", by at least {LEAST:g} s"
             raise ParameterError(wrong(f"{times}[{later}]", float(instants[later]), allowed))
-    return instants, np.where(np.isnan(instants), np.nan, errors)
+    return instants, np.where(missed, np.nan, errors)
 
 
 def _of_dataset(data: xr.Dataset, *, doubtful: bool) -> tuple[Array, Array]:

@@ -85,9 +85,3 @@ class Family:
             rough = law.friction > 0.0
             law = Coulomb(normal=law.normal, friction=STICKS) if rough else Frictionless(normal=law.normal)
         return coupling(law, self.body(0.0))
-
-    def check_friction(self, friction: tuple[float, float] | None) -> None:
-        """Raise `ValueError` where friction is to be inferred and the law has none."""
-        if friction is not None and not isinstance(self.law, Coulomb):
-            kind = type(self.law).__name__
-            raise ParameterError(Problem("friction", f": given for a {kind}; only a Coulomb law has it"))

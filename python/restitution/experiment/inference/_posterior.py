@@ -18,6 +18,7 @@ from restitution._internal.parameters import (
     Number,
     ParameterError,
     Parameters,
+    Problem,
     Whole,
     in_terms_of,
     wrong,
@@ -30,7 +31,7 @@ from restitution.experiment.inference._rough import PER_SHAPE, flights, over_hei
 from restitution.experiment.inference._series import NEEDED, Series, check_from_release
 from restitution.experiment.inference._table import Table, table
 from restitution.experiment.inference._verdict import agreeing, answer, disagreement, judge, sentence
-from restitution.laws import Law, Material
+from restitution.laws import Coulomb, Law, Material
 
 _SHAPES, _SCATTERS, _FRICTIONS = 8, 3, 6
 """Values of L/R and of the scatter of ε_n in a decade, and values of friction."""
@@ -199,7 +200,9 @@ def posterior(
     if not high < _MOST_RANGE * low:
         raise ParameterError(wrong("elongation", elongation, f"high < {_MOST_RANGE:g} low"))
     family = Family(law, setting.diameter, form, setting.lobes, setting.wall)
-    family.check_friction(friction)
+    if friction is not None and not isinstance(law, Coulomb):
+        kind = type(law).__name__
+        raise ParameterError(Problem("friction", f": given for a {kind}; only a Coulomb law has it"))
     hollow = {} if wall is None else {"wall": wall}
     if out_of_roundness is not None:
         of_it = 4.0 * out_of_roundness / diameter
@@ -276,16 +279,7 @@ def _rough(
     kicks = np.geomspace(low, high, 1 + math.ceil(0.5 * _SHAPES * math.log10(high / low)))
 
     def bounced(one: Series, parameter: float, kick: float, _: float | None, start: int) -> Array:
-        return flights(
-            one.form,
-            parameter,
-            kick,
-            drop=one.drop,
-            gravity=one.gravity,
-            particles=setting.particles,
-            impacts=one.errors.size,
-            seed=start,
-        )
+        return flights(one, parameter, kick, setting.particles, start)
 
     found = table(series, family, bounced, kicks, scatters, [None], setting.particles, setting.seed)
     fine = np.geomspace(heights[0], heights[-1], found.axes[1].size)

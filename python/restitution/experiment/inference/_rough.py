@@ -17,40 +17,30 @@ import numpy as np
 from scipy.interpolate import Akima1DInterpolator
 
 from restitution._internal.arrays import FloatArray as Array
-from restitution.experiment.flight.laws import LawOfSpeed
+from restitution.experiment.inference._series import Series
 from restitution.experiment.inference._table import Table
 
 PER_SHAPE = 1.0 / (8.0 * np.sqrt(2.0))
 """Mean height over R of asperities that make ε scatter as a ball of two lobes does, over (L/R)²."""
 
 
-def flights(
-    form: LawOfSpeed,
-    parameter: float,
-    kick: float,
-    *,
-    drop: float,
-    gravity: float,
-    particles: int,
-    impacts: int,
-    seed: int,
-) -> Array:
-    """Drop such balls without spin; return their flights in s, shape (particles, impacts - 1)."""
+def flights(one: Series, parameter: float, kick: float, particles: int, seed: int) -> Array:
+    """Drop such balls as the series was, without spin; return their flights in s, (particles, n - 1)."""
     rng = np.random.default_rng(seed)
-    speed = np.full(particles, np.sqrt(2.0 * gravity * drop))
+    speed = np.full(particles, np.sqrt(2.0 * one.gravity * one.drop))
     drift = np.zeros((particles, 2))
-    found = np.empty((particles, impacts - 1))
-    for impact in range(impacts - 1):
+    found = np.empty((particles, one.errors.size - 1))
+    for impact in range(one.errors.size - 1):
         moving = speed > 0.0  # others have come to rest, and are no series
         here = np.where(moving, speed, np.nan)
         usual = np.full(particles, np.nan)
-        usual[moving] = form.coefficient(speed[moving], np.array([parameter]))
+        usual[moving] = one.form.coefficient(speed[moving], np.array([parameter]))
         arm = rng.standard_normal((particles, 2)) + drift / here[:, None]
         approach = here + np.sum(drift * arm, axis=1)
         impulse = (1.0 + usual) * approach / (1.0 + kick * np.sum(arm**2, axis=1))
         drift = drift - kick * impulse[:, None] * arm
         speed = impulse - here
-        found[:, impact] = 2.0 * speed / gravity
+        found[:, impact] = 2.0 * speed / one.gravity
     return found
 
 

@@ -86,9 +86,20 @@ class Series(Content):
     tables: int = 1
 
     @property
+    def _known(self) -> xr.Dataset:
+        """The impacts whose coefficient of restitution is known."""
+        return self.data.isel(impact=np.flatnonzero(np.isfinite(self.data.restitution)))
+
+    @property
     def coefficients(self) -> int:
         """Number of coefficients of restitution."""
-        return int(np.isfinite(self.data.restitution).sum())
+        return self._known.sizes["impact"]
+
+    @property
+    def _speeds(self) -> str:
+        """Between which speeds they are."""
+        speeds = self._known.impact_velocity.values
+        return f"between {speeds.min():.2f} and {speeds.max():.2f} m/s"
 
     @property
     def mean(self) -> flight.LawFit | None:
@@ -100,21 +111,18 @@ class Series(Content):
         """The result: the mean ε with its error, and a line on where it holds and what makes ε scatter."""
         if self.mean is None:
             return None
-        speeds = self.data.impact_velocity.values[np.isfinite(self.data.restitution.values)]
-        line = f"The mean between {speeds.min():.2f} and {speeds.max():.2f} m/s"
+        line = f"The mean {self._speeds}"
         if self.tables > 1 and self.mean.between_groups_error > 0.0:
             differ = spread(self.mean.between_groups, self.mean.between_groups_error)
             line += f". Tables differ by {differ}"
         if self.shape is not None and self.shape.draws is not None:
             line += f". {self.shape.draws.attrs['answer']}"
-        value = with_error(self.mean.parameters["restitution"], self.mean.errors["restitution"])
+        [(_, value)] = self.mean.estimates()
         return f"ε = {value}", f"{line}."
 
     def sentence(self, setting: Setting) -> str:
         """State the result in a sentence, as a paper would."""
         checked(setting)
-        known = np.isfinite(self.data.restitution.values)
-        speeds = self.data.impact_velocity.values[known]
         error = float(np.nanmedian(self.data.uncertainty.values)) * 1e6
         number = int(np.isfinite(self.data.time).sum())
         timed = f"timed to {digits(error)} µs (standard error)" if error else "with times of unknown error"
@@ -124,25 +132,16 @@ class Series(Content):
             f"From the {'sound' if heard_in(self.heard) else 'times'} of {number} impacts{drops} of {what} "
             f"of {1e3 * setting.diameter:g} mm diameter, {timed}"
         )
-        if not known.any():
+        if not self.coefficients:
             return f"{begin}, no coefficient of restitution can be given."
-        between = f"between {speeds.min():.2f} and {speeds.max():.2f} m/s"
         mean = self.mean
         if mean is None:
-            values = ", ".join(
-                with_error(float(value), float(sigma))
-                for value, sigma in zip(
-                    self.data.restitution.values[known],
-                    self.data.restitution_error.values[known],
-                    strict=True,
-                )
-            )
-            return f"{begin}, the coefficient of restitution is {values} {between}."
+            columns = (self._known.restitution.values.tolist(), self._known.restitution_error.values.tolist())
+            values = ", ".join(map(with_error, *columns))
+            return f"{begin}, the coefficient of restitution is {values} {self._speeds}."
         best = self.fits[0]
-        text = (
-            f"{begin}, the mean coefficient of restitution {between} is "
-            f"{with_error(mean.parameters['restitution'], mean.errors['restitution'])}"
-        )
+        [(_, value)] = mean.estimates()
+        text = f"{begin}, the mean coefficient of restitution {self._speeds} is {value}"
         if mean.scatter_error > 0.0:
             text += f", with a scatter of {spread(mean.scatter, mean.scatter_error)} from impact to impact"
             text += " that errors of the times do not explain" if error else ""
@@ -234,14 +233,13 @@ class Analysis(Content):
 
         Of several files, ``file`` is the number of the impact's file, from 0, whose times begin with it.
         """
-        heard = [one.heard.drop_attrs() for one in self.recordings]
-        table = xr.concat(heard, "impact") if len(heard) > 1 else self.recordings[0].heard.copy()
+        heard = [one.heard for one in self.recordings]
+        table = heard[0].copy()
         if len(heard) > 1:
+            table = xr.concat(heard, "impact", combine_attrs="override")
             files = np.repeat(np.arange(len(heard)), [one.sizes["impact"] for one in heard])
             table["file"] = ("impact", files)
-            table.attrs["files"] = self.file
-            for name, variable in self.recordings[0].heard.variables.items():
-                table[name].attrs = variable.attrs
+            table.attrs = {"files": self.file}
         rows = table.sizes["impact"]
         names = ("impact_velocity", "impact_velocity_error", "restitution", "restitution_error")
         for name in names:

@@ -127,7 +127,7 @@ def _drops(analysis: Analysis) -> str:
         for one in recording.series:
             mean, cells = one.mean, ["–", "–"]
             if mean is not None:
-                cells[0] = prose(with_error(mean.parameters["restitution"], mean.errors["restitution"]))
+                cells[0] = prose(mean.estimates()[0][1])
             if mean is not None and mean.scatter_error > 0.0:
                 cells[1] = prose(spread(mean.scatter, mean.scatter_error))
             rows.append([text(analysis.named(recording)), str(one.number), str(one.coefficients), *cells])

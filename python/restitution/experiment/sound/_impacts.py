@@ -114,13 +114,15 @@ def impacts(source: str | PathLike[str] | npt.ArrayLike, rate: float | None = No
 
 
 def _heard_in(samples: Array, own: float, name: str) -> xr.Dataset:
-    channel, tracks, loudest = _tracks(samples, own)
+    # Most impacts are heard in this channel and band.
+    _, channel, tracks, loudest, every = max(_tried(samples, own), key=lambda tried: tried[0])
     if not tracks:
         share = clipped_share(samples)
         if share > _CLIPPED_THROUGHOUT:
             text = f": clipped throughout ({100 * share:.0f} % of the loud samples); record with less gain"
             raise ParameterError(Problem(name, text))
         raise ParameterError(Problem(name, f": {_what_was_heard(loudest)}"))
+    tracks = [followed(track, every) for track in tracks]
     heard = [(track, _picked(samples[:, channel], own, track)) for track in tracks]
     heard.sort(key=lambda one: float(one[1].times[0]))
     found = _dataset(heard, own, channel, clipped_share(samples), name)
@@ -128,12 +130,6 @@ def _heard_in(samples: Array, own: float, name: str) -> xr.Dataset:
     if others:
         found["flag"] = ("impact", _of_one_ball(found), found.flag.attrs)
     return found.assign_attrs(other_ball_impacts=others)
-
-
-def _tracks(samples: Array, rate: float) -> tuple[int, list[Track], Envelope]:
-    """Follow the series in the channel and the band where most impacts are heard."""
-    _, channel, tracks, one, heard = max(_tried(samples, rate), key=lambda tried: tried[0])
-    return channel, [followed(track, heard) for track in tracks], one
 
 
 def _tried(samples: Array, rate: float) -> Iterator[tuple[float, int, list[Track], Envelope, list[Envelope]]]:
