@@ -24,22 +24,12 @@ _SHORTEST = 0.1
 
 @dataclass(frozen=True)
 class Source:
-    """Errors of the coefficients of a series of n.
+    """Errors of the coefficients of a series of n."""
 
-    Attributes
-    ----------
-    bias : ndarray, shape (n,)
-        Mean of the measured ε less ε_n at the measured speed.
-    covariance : ndarray, shape (n, n)
-        Of the measured ε about that mean.
-    errors, without : ndarray, shapes (particles, n), or None
-        Of simulated drops, and of those whose mean and covariance were taken off.
-    """
-
-    bias: Array
-    covariance: Array
-    errors: Array | None = None
-    without: Array | None = None
+    bias: Array  # mean of the measured ε less ε_n at the measured speed, shape (n,)
+    covariance: Array  # of the measured ε about that mean, shape (n, n)
+    errors: Array | None = None  # of simulated drops, shape (particles, n)
+    without: Array | None = None  # of the drops whose mean and covariance were taken off, the same shape
 
     def carried(self, by: Array) -> dict[str, Array]:
         """Carry the errors on to m quantities that change by `by`, shape (m, n), with those of ε.

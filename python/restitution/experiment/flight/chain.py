@@ -25,49 +25,27 @@ _LONGEST = 50.0
 class Chain:
     """The speeds of n impacts, and their derivatives by the n + 5 numbers that were measured.
 
-    Attributes
-    ----------
-    before, after : ndarray, shape (n,)
-        Speed towards and away from the plane, in m/s; NaN where the times do not determine it.
-    before_by, after_by : ndarray, shape (n, n + 5)
-        Derivatives by the n times, g, the height of the drop, the terminal velocity, the contact time at
-        1 m/s and the rate of the clock, by which all true intervals are longer than it shows; 0 where the
-        speed is NaN.
-    variances : ndarray, shape (n + 5,)
-        Of these n + 5 numbers. Their errors are independent.
+    These are the n times, g, the height of the drop, the terminal velocity, the contact time at 1 m/s and the
+    rate of the clock, by which all true intervals are longer than it shows. Their errors are independent.
     """
 
-    before: Array
-    after: Array
-    before_by: Array
+    before: Array  # speed towards the plane in m/s, shape (n,); NaN where the times do not determine it
+    after: Array  # and away from it
+    before_by: Array  # derivatives, shape (n, n + 5); 0 where the speed is NaN
     after_by: Array
-    variances: Array
+    variances: Array  # of the n + 5 numbers
 
 
 @dataclass(frozen=True)
 class Measured:
-    """Measured values of one series of n impacts, and the variances of these numbers and of the clock.
+    """Measured values of one series of n impacts, and the variances of these numbers and of the clock."""
 
-    Attributes
-    ----------
-    times : ndarray, shape (n,)
-        In s. NaN is an impact that took place and was not measured.
-    gravity : float
-        In m/s².
-    drop, terminal : float or None
-        Height of the drop in m, and terminal velocity in m/s, where they count.
-    variances : ndarray, shape (n + 5,)
-        In the order of `Chain`; 0 where there is not a number.
-    contact : float
-        Time of contact at 1 m/s, in s.
-    """
-
-    times: Array
-    gravity: float
-    drop: float | None
-    terminal: float | None
-    variances: Array
-    contact: float = 0.0
+    times: Array  # in s, shape (n,); NaN is an impact that took place and was not measured
+    gravity: float  # in m/s²
+    drop: float | None  # height of the drop in m, where it counts
+    terminal: float | None  # terminal velocity in m/s, where it counts
+    variances: Array  # in the order of `Chain`, shape (n + 5,); 0 where there is not a number
+    contact: float = 0.0  # time of contact at 1 m/s, in s
 
     def timed(self, error: float) -> "Measured":
         """Return the chain with one standard error, in s, for all times."""

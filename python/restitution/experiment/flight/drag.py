@@ -96,19 +96,11 @@ class _Sphere(Ball):
 
 
 class Speeds(NamedTuple):
-    """Speeds at the ends of flights, and their derivatives; every array has the shape of the flights.
+    """Speeds at the ends of flights, and their derivatives; every array has the shape of the flights."""
 
-    Attributes
-    ----------
-    up, down : ndarray
-        Speed with which the flight began, and with which it ended, in m/s.
-    up_by, down_by : tuple of three ndarrays
-        Derivatives by the time of flight, by g and by the terminal velocity.
-    """
-
-    up: Array
-    down: Array
-    up_by: tuple[Array, Array, Array]
+    up: Array  # speed with which the flight began, in m/s
+    down: Array  # and with which it ended
+    up_by: tuple[Array, Array, Array]  # derivatives by the time of flight, by g and by the terminal velocity
     down_by: tuple[Array, Array, Array]
 
 

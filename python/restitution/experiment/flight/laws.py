@@ -14,28 +14,14 @@ from restitution.laws import Plastic, Viscoelastic
 
 @dataclass(frozen=True)
 class LawOfSpeed:
-    """ε_n as a function of the normal impact speed.
+    """ε_n as a function of the normal impact speed."""
 
-    Attributes
-    ----------
-    name : str
-        As `fit` takes it.
-    parameters, units : tuple of str
-        Names and units of the parameters.
-    coefficient : callable
-        ε_n at speeds in m/s, shape (n,), for parameters, shape (p,).
-    least : float
-        What a parameter is at least.
-    start : callable
-        Parameters near those that fit ε_n measured at speeds.
-    """
-
-    name: str
+    name: str  # as `fit` takes it
     parameters: tuple[str, ...]
-    units: tuple[str, ...]
-    coefficient: Callable[[Array, Array], Array]
-    least: float
-    start: Callable[[Array, Array], Array]
+    units: tuple[str, ...]  # of the parameters
+    coefficient: Callable[[Array, Array], Array]  # ε_n at speeds in m/s, shape (n,), for parameters, (p,)
+    least: float  # what a parameter is at least
+    start: Callable[[Array, Array], Array]  # parameters near those that fit ε_n measured at speeds
 
     def __reduce__(self) -> tuple[Any, tuple[str]]:
         """Pickle by name, because functions cannot be pickled."""

@@ -183,7 +183,7 @@ def posterior(
     >>> found.attrs["explained_by"]  # of one drop; more drops decide
     'undecided'
     """
-    from_dict = _from_dict()
+    _from_dict()  # before anything is simulated
     setting = Setting(
         diameter=diameter,
         lobes=lobes,
@@ -246,7 +246,6 @@ def posterior(
         found = found.weighted(-0.5 * ((found.axes[1] - place) / _MEASURED) ** 2)
     rough = _rough(series, family, nodes, scatters, coefficients, setting)
     return _tree(
-        from_dict,
         family,
         setting,
         (found, rough, smooth),
@@ -325,7 +324,6 @@ def _prior(name: str, value: object, *, least: float) -> tuple[float, float]:
 
 
 def _tree(
-    from_dict: Any,
     family: Family,
     setting: Setting,
     tables: tuple[Table, Table | None, Table],
@@ -362,7 +360,7 @@ def _tree(
         "sample_stats": {"lp": log},
         "observed_data": {"numbers": np.array([one.observed for one in series])},
     }
-    tree: xr.DataTree = from_dict(groups, sample_dims=["chain", "draw"])
+    tree: xr.DataTree = _from_dict()(groups, sample_dims=["chain", "draw"])
     if rough is not None:
         asperities, _ = drawn(rough)
         asperities["roughness"] = asperities.pop("surface") / HEIGHT

@@ -73,49 +73,23 @@ class Series:
     residual that was left out, over the root mean square of the others, and the correlation of residuals
     with ln v. The covariance is that of the times and one scatter for all, rounded to half decades so that
     it hardly depends on the series.
-
-    Attributes
-    ----------
-    drop : float
-        Height of the fall before the first impact, in m.
-    gravity, common : float
-        g in m/s², and the error of g and of the clock, over the value, that all speeds have in common.
-    errors : ndarray, shape (n,)
-        Standard errors of the times.
-    delay : ndarray, shape (n - 1,)
-        What the standard error of the time of contact does to each flight, in s.
-    known : ndarray of int, shape (k,)
-        Impacts whose coefficient is known from times alone.
-    speed : ndarray, shape (k,)
-        Their measured speeds.
-    reference : float
-        The parameter about which everything is linear.
-    form : LawOfSpeed
-    slopes, spread : ndarray, shape (k,)
-        dε_n by the parameter, and the standard deviation of each coefficient.
-    unseen : float
-        A scatter of ε_n that errors of the times hide.
-    estimator : ndarray, shape (k,)
-    whiten : ndarray, shape (k, k)
-        Makes of residuals those that are independent, the fitted parameter taken off.
-    observed : ndarray, shape (6,)
     """
 
-    drop: float
-    gravity: float
-    common: float
-    errors: Array
-    delay: Array
-    known: npt.NDArray[np.intp]
-    speed: Array
-    reference: float
+    drop: float  # height of the fall before the first impact, in m
+    gravity: float  # in m/s²
+    common: float  # error of g and of the clock, over the value, that all speeds have in common
+    errors: Array  # standard errors of the times, shape (n,)
+    delay: Array  # what the standard error of the time of contact does to each flight, in s, shape (n - 1,)
+    known: npt.NDArray[np.intp]  # impacts whose coefficient is known from times alone, shape (k,)
+    speed: Array  # their measured speeds, shape (k,)
+    reference: float  # the parameter about which everything is linear
     form: LawOfSpeed
-    slopes: Array
-    spread: Array
-    unseen: float
-    estimator: Array
-    whiten: Array
-    observed: Array = field(default_factory=lambda: np.zeros(NUMBERS))
+    slopes: Array  # dε_n by the parameter, shape (k,)
+    spread: Array  # the standard deviation of each coefficient, shape (k,)
+    unseen: float  # a scatter of ε_n that errors of the times hide
+    estimator: Array  # of the parameter by the residuals, shape (k,)
+    whiten: Array  # makes of residuals independent ones, the fitted parameter taken off, shape (k, k)
+    observed: Array = field(default_factory=lambda: np.zeros(NUMBERS))  # shape (6,)
 
     @classmethod
     def of(

@@ -32,25 +32,14 @@ _FINER = 4
 class Table:
     """Logarithm of the likelihood.
 
-    Attributes
-    ----------
-    axes : tuple of ndarray
-        The parameter of ε_n, ln L/R, and where they are inferred ln of the scatter and the friction.
-    values : ndarray
-        Over these axes.
-    signs : tuple of float
-        Probabilities of what was observed, were the best ball true: as of `Density.beyond`.
-    best : float
-        The largest logarithm of a likelihood.
-    noise : float
-        The variance of that logarithm if other drops had been simulated.
+    Its axes are the parameter of ε_n, ln L/R, and where they are inferred ln of the scatter and the friction.
     """
 
     axes: tuple[Array, ...]
-    values: Array
-    signs: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0)
-    best: float = 0.0
-    noise: float = 0.0
+    values: Array  # over these axes
+    signs: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0)  # as of `Density.beyond`, were the best ball true
+    best: float = 0.0  # the largest logarithm of a likelihood
+    noise: float = 0.0  # the variance of that logarithm if other drops had been simulated
 
     def between(self) -> RegularGridInterpolator:
         """Interpolate linearly."""

@@ -23,22 +23,14 @@ _CHANCE = 1e-3
 class Compared(NamedTuple):
     """A standard deviation by the error budget, and as it was observed.
 
-    Attributes
-    ----------
-    name : str
-    budget, least : float
-        With errors that all impacts have in common, as of g, drag or the time of contact, which a law takes
-        up, and without.
-    observed : float
-    degrees : float
-        Degrees of freedom of the observed one.
+    Errors that all impacts have in common, as of g, drag or the time of contact, may be taken up by a law.
     """
 
     name: str
-    budget: float
-    least: float
+    budget: float  # with these errors
+    least: float  # and without
     observed: float
-    degrees: float
+    degrees: float  # of freedom of the observed one
 
     @property
     def disagree(self) -> bool:

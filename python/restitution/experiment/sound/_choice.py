@@ -35,42 +35,24 @@ _TINY = 1e-18
 
 
 class Choice(NamedTuple):
-    """The rule that is trusted.
+    """The rule that is trusted, and the time in s of each impact by it."""
 
-    Attributes
-    ----------
-    rule : str
-        What it is, and in which band.
-    times, errors : ndarray
-        Of each impact and its standard error, in s.
-    doubtful : ndarray of bool
-        Which times the other rules contradict, or noise hides.
-    """
-
-    rule: str
+    rule: str  # what it is, and in which band
     times: Array
-    errors: Array
-    doubtful: npt.NDArray[np.bool_]
+    errors: Array  # standard errors of the times, in s
+    doubtful: npt.NDArray[np.bool_]  # which times the other rules contradict, or noise hides
 
 
 @dataclass(frozen=True)
 class _Picks:
-    """Times of all impacts by one rule in one band, in s, and what noise does to them.
-
-    Attributes
-    ----------
-    noise, whole : ndarray
-        Variance by noise in s², of the times that do not go astray, and of all.
-    lost : ndarray
-        Share of times that go astray, to another wave of the sound or into the noise.
-    """
+    """Times of all impacts by one rule in one band, in s, and what noise does to them."""
 
     rule: str
     band: str
     times: Array
-    noise: Array
-    whole: Array
-    lost: Array
+    noise: Array  # variance by noise in s², of the times that do not go astray
+    whole: Array  # of all times
+    lost: Array  # share of times that go astray, to another wave of the sound or into the noise
 
     def beside(self, other: Array) -> Array:
         """Return the times with the delay of others."""

@@ -20,30 +20,14 @@ _APART = 2.5
 
 @dataclass(frozen=True)
 class Envelope:
-    """Measure the rise of the level of a band.
+    """Measure the rise of the level of a band."""
 
-    Attributes
-    ----------
-    band : (float, float)
-        Its frequencies in Hz.
-    step : float
-        Time between values, in s.
-    level : ndarray
-        Level in dB over the noise, >= 0.
-    rise : ndarray
-        Level just after a time over the mean level before it, in dB.
-    spread : float
-        What rises of noise and ringing amount to, in dB: 1.4826 times the median of positive ones.
-    width : float
-        Smoothing time in s.
-    """
-
-    band: tuple[float, float]
-    step: float
-    level: Array
-    rise: Array
-    spread: float
-    width: float
+    band: tuple[float, float]  # its frequencies in Hz
+    step: float  # time between values, in s
+    level: Array  # in dB over the noise, >= 0
+    rise: Array  # level just after a time over the mean level before it, in dB
+    spread: float  # of rises of noise and ringing, in dB: 1.4826 times the median of positive ones
+    width: float  # smoothing time in s
 
     def candidates(self, least: float) -> tuple[Array, Array]:
         """Return times in s and rises in dB of all maxima of the rise over `least` times the spread."""

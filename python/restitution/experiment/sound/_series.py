@@ -21,18 +21,10 @@ _MOST = 500
 
 @dataclass(frozen=True)
 class Series:
-    """Candidates that follow one another like impacts.
+    """Candidates that follow one another like impacts."""
 
-    Attributes
-    ----------
-    members : ndarray of int
-        Indices of the candidates, in the order of time.
-    score : float
-        Sum of their rewards less what uneven ratios cost.
-    """
-
-    members: IntArray
-    score: float
+    members: IntArray  # indices of the candidates, in the order of time
+    score: float  # sum of their rewards less what uneven ratios cost
 
 
 def best_series(

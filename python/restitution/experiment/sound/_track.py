@@ -23,27 +23,15 @@ _LATER = 0.25
 
 @dataclass(frozen=True)
 class Track:
-    """A series of impacts in an envelope.
+    """A series of impacts in an envelope; once it is followed, with what was faint, missed and doubled.
 
-    Attributes
-    ----------
-    times : ndarray, shape (n,)
-        When the level rises, in s.
-    worth : float
-        What its impacts were worth in the search.
-    envelope : Envelope
-        Of the band in which the series was found.
-    faint : ndarray of bool, shape (n,)
-        Which impacts were found only because they were expected.
-    missed : ndarray of int
-        After which impacts one was not heard.
-    doubled : ndarray
-        Times of sounds as loud as an impact that belong to no series.
+    Impacts are faint that were found only because they were expected, shape (n,). Missed is one after each of
+    some impacts, and doubled are times of sounds as loud as an impact that belong to no series.
     """
 
-    times: Array
-    worth: float
-    envelope: Envelope
+    times: Array  # when the level rises, in s, shape (n,)
+    worth: float  # of its impacts in the search
+    envelope: Envelope  # of the band in which the series was found
     faint: npt.NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, dtype=np.bool_))
     missed: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     doubled: Array = field(default_factory=lambda: np.empty(0))
