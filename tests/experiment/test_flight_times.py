@@ -43,7 +43,11 @@ WRONG: list[tuple[Any, Any, str]] = [
         None,
         r"^times\.uncertainty has dimensions \(impact, way\): must be those of time, \(impact\)",
     ),
-    (heard(flag=[0.0, 4.0, 7.0]), None, r"^times\.flag = 4\.0: must be 0 to 3: good, doubtful, missed, doub"),
+    (
+        heard(flag=[0.0, 4.0, 7.0]),
+        None,
+        r"^times\.flag\[1\] = 4\.0: must be 0 to 3: good, doubtful, missed, doub",
+    ),
     (heard(flag=["a", "b", "c"]), None, r"^times\.flag = .*: must be 0 to 3: good, doubtful"),
     (heard().assign(time=("impact", ["a", "b", "c"])), None, r"^times\.time = .*: must be numbers, in s"),
     (

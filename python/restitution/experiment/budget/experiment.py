@@ -20,7 +20,7 @@ from restitution._internal.parameters import (
 )
 from restitution.bodies import Body
 from restitution.experiment.flight.chain import COMMON, Measured, chain
-from restitution.experiment.flight.laws import LAWS, LawOfSpeed, by_parameters
+from restitution.experiment.flight.laws import LAWS, LawOfSpeed, by_parameters, law_named
 from restitution.experiment.flight.setting import Gravity
 from restitution.experiment.flight.times import LARGEST
 from restitution.laws import (
@@ -114,10 +114,8 @@ def coupling(law: Law, body: Body) -> float | None:
 def law_of_speed(law: Law) -> LawOfSpeed:
     """Find what an experimenter fits to balls that bounce by a law."""
     normal = law.normal
-    if isinstance(normal, Viscoelastic):
-        return LAWS["viscoelastic"]
-    if isinstance(normal, Plastic):
-        return LAWS["plastic"]
+    if isinstance(normal, Viscoelastic | Plastic):
+        return law_named(type(normal))
     return LAWS["power law" if isinstance(normal, Material) else "constant"]
 
 

@@ -117,9 +117,7 @@ def _of_dataset(data: xr.Dataset, *, doubtful: bool) -> tuple[Array, Array]:
     if "flag" in data:
         allowed = f"0 to {len(FLAGS) - 1}: {', '.join(FLAGS)}"
         flags = _column(data, "flag", allowed)
-        unknown = np.setdiff1d(flags[~np.isnan(flags)], range(len(FLAGS)))
-        if unknown.size:
-            raise ParameterError(wrong("times.flag", float(unknown[0]), allowed))
+        check_each("times.flag", flags, np.isnan(flags) | np.isin(flags, range(len(FLAGS))), allowed)
         unknown_times = (flags == MISSED) | ((flags == DOUBTFUL) & (not doubtful))
         instants = np.where(unknown_times, np.nan, instants)
         kept = flags != DOUBLED

@@ -136,7 +136,7 @@ def table(
     noise = [one.noise(_NOISES * particles, seed + 7 * k) for k, one in enumerate(series)]
     unseen = max(_NO_SCATTER, min(one.unseen for one in series))
     widths = [0.0 if scatter is None or scatter <= unseen else scatter for scatter in scatters]
-    distinct, places = np.unique(widths, return_inverse=True)
+    distinct, places = np.unique(widths, return_inverse=True)  # some scatters are the same, none
     densities: list[list[Density]] = []
     for x, mu in product(nodes, frictions):
         flights = [simulated(one, middle, float(x), mu, seed + 7 * k) for k, one in enumerate(series)]

@@ -108,15 +108,11 @@ def agreeing(found: Table, rough: Table | None) -> Table:
 
 def disagreement(found: Table) -> str:
     """Say first what disagrees with the best ball."""
-    wrong = [
-        (share, words)
-        for share, words in zip(found.signs, _SIGNS, strict=True)
-        if share < _DISAGREES / len(_SIGNS)
-    ]
-    if not wrong:
+    least = _DISAGREES / len(_SIGNS)
+    share, words = min(zip(found.signs, _SIGNS, strict=True), key=lambda each: each[0])
+    if share >= least:
         return ""
-    share, words = min(wrong, key=lambda each: each[0])
-    p = f"p = {share:.1g}" if share > 0.0 else f"p < {_DISAGREES / len(_SIGNS):.1g}"
+    p = f"p = {share:.1g}" if share > 0.0 else f"p < {least:.1g}"
     return f"{words} ({p} for the best ball of this kind); what follows holds only for such balls. "
 
 
