@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from restitution.papers import shape
+from restitution.papers.estimate import deviations
 from restitution.papers.gunkelmann2014 import PAPER
-from restitution.papers.gunkelmann2014._claims import deviations
-from restitution.papers.gunkelmann2014._data import mean_share
 from restitution.papers.gunkelmann2014._runs import Runs, number, simulate
 from restitution.papers.gunkelmann2014._settings import Settings
 from restitution.papers.report import report
@@ -68,7 +67,7 @@ def test_the_scatter_is_the_closed_form(runs: Runs) -> None:
     cases += [(data, SMALL.contact(asperities=n), 0.1) for n, data in runs.by_number.items()]
     for data, contact, part in cases:
         found = deviations(data, SMALL)
-        exact = np.array([SMALL.density(contact, v).std() for v in SMALL.speeds])
+        exact = np.array([SMALL.density(v, contact).std() for v in SMALL.speeds])
         assert np.all(np.abs(found.value - exact) < 5.0 * found.error + part * exact), data.attrs["run"]
 
 
@@ -77,7 +76,7 @@ def test_the_share_of_rotation_is_the_closed_form(runs: Runs) -> None:
     velocity, share = (runs.main[name].to_numpy() for name in ("impact_velocity", "rotational_fraction"))
     for v, (low, high) in zip(SMALL.speeds, SMALL.speed_windows, strict=True):
         inside = share[(velocity >= low) & (velocity < high)]
-        exact = mean_share(SMALL, SMALL.contact(), v)
+        exact = SMALL.mean_share(v)
         assert abs(inside.mean() - exact) < 5.0 * inside.std() / np.sqrt(inside.size) + 0.25 * exact
 
 

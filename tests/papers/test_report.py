@@ -9,8 +9,8 @@ import pytest
 
 from restitution._internal.text import with_error
 from restitution.figures.report import grouped
+from restitution.papers.estimate import deviations
 from restitution.papers.glielmo2014 import PAPER
-from restitution.papers.glielmo2014._claims import deviations
 from restitution.papers.glielmo2014._runs import Runs, simulate
 from restitution.papers.glielmo2014._settings import Settings
 from restitution.papers.report import report

@@ -7,6 +7,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from restitution.papers.settings import AtSpeeds
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
@@ -113,6 +115,17 @@ class Impacts:
         where = (self.where[0][chosen], self.where[1][chosen])
         return Impacts(where, self.cell[chosen], self.cells, self.particles)
 
+    def followed(self, data: xr.Dataset) -> "Impacts":
+        """Select the impacts of a run that have a next one of the same particle with a finite ε."""
+        finite = np.isfinite(data["restitution"].to_numpy())
+        follows = np.zeros_like(finite)
+        follows[:, :-1] = finite[:, 1:]
+        return self.only((follows & finite)[self.where])
+
+    def following(self, values: NDArray[np.generic]) -> Array:
+        """Return values of a (particle, impact) variable at the impacts that follow these."""
+        return self.of(values[:, 1:])
+
     def one_per_particle(self, seed: int) -> "Impacts":
         """Keep at most one impact of a particle in each cell: those of a cell are then independent draws.
 
@@ -190,6 +203,12 @@ def settled_speed(data: xr.Dataset, share: float = 0.95) -> float:
     v = data["impact_velocity"].to_numpy()
     slowest = np.min(np.where(v > 0, v, np.inf), axis=1)
     return float(np.quantile(slowest, share))
+
+
+def deviations(data: xr.Dataset, settings: AtSpeeds) -> Estimate:
+    """Return σ(ε) in the windows of the speeds at which densities are shown."""
+    impacts = in_windows(data["impact_velocity"], settings.speed_windows)
+    return impacts.deviations(impacts.of(data["restitution"]))
 
 
 def jackknife(

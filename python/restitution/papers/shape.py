@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from restitution import fit
-from restitution.papers.claims import SIGNIFICANT, Measurement, Verdict, verdict
+from restitution.papers.claims import SIGNIFICANT, Finding, Measurement, Verdict, verdict
 from restitution.papers.estimate import Array, Index, in_windows, jackknife
 
 Windows = tuple[tuple[float, float], ...]
@@ -36,6 +36,12 @@ class Shape:
         p = min(self.goodness.kolmogorov_smirnov_p, self.goodness.anderson_darling_p)
         far = (abs(value - 1) > SIGNIFICANT * error for value, error in (self.exponent, self.tails))
         return p <= REJECTED or any(far)
+
+    @property
+    def skewed(self) -> bool:
+        """True if the decay lengths above and below differ."""
+        value, error = self.asymmetry
+        return abs(value) > SIGNIFICANT * error
 
     @property
     def verdict(self) -> Verdict:
@@ -106,6 +112,25 @@ def tails(values: Array) -> float:
 def _log_ratio(values: Array) -> float:
     found = fit.asymmetric_laplace(values).parameters
     return float(np.log(found["above"] / found["below"]))
+
+
+def laplace(shapes: Sequence[Shape], why: str) -> Finding:
+    """Judge the claim that the density is a Laplace density at these speeds, by `LAPLACE_RULE`."""
+    measured: list[Measurement] = []
+    for one in shapes:
+        measured += [
+            Measurement("independent draws", float(one.goodness.fit.samples), at=one.label),
+            *tests(one),
+            *(
+                Measurement(
+                    f"gain in ln L an impact over {name}", c.difference, c.standard_error, at=one.label
+                )
+                for name, c in one.rivals.items()
+            ),
+        ]
+    verdicts = [one.verdict for one in shapes]
+    holds = verdict(all(v == "holds" for v in verdicts), any(v != "fails" for v in verdicts))
+    return Finding(tuple(measured), holds, LAPLACE_RULE, why)
 
 
 def tests(one: Shape) -> tuple[Measurement, ...]:

@@ -1,6 +1,5 @@
 """The gases behind the figures and claims."""
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -52,12 +51,6 @@ def _shown(s: Settings) -> tuple[float, ...]:
 
 def simulate(s: Settings, particles: int, runner: Runner) -> Runs:
     """Follow every gas, of so many particles; of rods a quarter of them, of spheres by the rules half."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rs.DistanceWarning)  # p(ε | v) of a plane has bands
-        return _followed(s, particles, runner)
-
-
-def _followed(s: Settings, particles: int, runner: Runner) -> Runs:
 
     def cool(name: str, body: AnyBody, law: Law, collisions: float, **other: Any) -> xr.Dataset:
         usual: dict[str, Any] = {

@@ -12,6 +12,7 @@ Time is counted in 1/ν0, ν0 = 4√π nσ²√θ0 being the initial frequency o
 <v²>/3 in m²/s².
 """
 
+import warnings
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -115,9 +116,11 @@ def dropped(
     """Make the rules of v in m/s; learn p(ε | v) of a body on a plane, dropped from `drop` in m."""
     # Spread, so that no first impact stands out.
     heights = body.radii[0] + drop * np.geomspace(0.8, 1.0, min(particles // 2, 100))
-    plane = rs.FluctuatingRestitution.learn(
-        body, law, particles=particles, impacts=300, release_height=heights, velocities=(0.05, 4.0)
-    ).clamped()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rs.DistanceWarning)  # it has bands
+        plane = rs.FluctuatingRestitution.learn(
+            body, law, particles=particles, impacts=300, release_height=heights, velocities=(0.05, 4.0)
+        ).clamped()
     return {
         "plane": along(lambda v, _, rng: plane.rvs(v, random_state=rng, threads=1)),
         "pair": along(lambda v, _, rng: pair(v, rng)),

@@ -34,7 +34,7 @@ def slow(runs: Runs, s: Settings) -> xr.Dataset:
 def restitution_histograms(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 4: density of restitution at each speed with its asymmetric Laplace fit to recorded impacts."""
     parts = []
-    windows = zip(at_speeds(runs.windows, s), s.speed_windows, s.histogram_widths, strict=True)
+    windows = zip(at_speeds(runs.windows), s.speed_windows, s.histogram_widths, strict=True)
     for found, window, width in windows:
         particle, values = in_window(runs.main, "restitution", window)
         edges = histogram_edges(s, width)
@@ -56,7 +56,7 @@ def fraction_histograms(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 5: density of E_rot/E_tot at each speed."""
     edges = mesh(*s.fraction_range, s.fraction_mesh)
     parts = []
-    for found, window in zip(at_speeds(runs.windows, s), s.speed_windows, strict=True):
+    for found, window in zip(at_speeds(runs.windows), s.speed_windows, strict=True):
         together = design_effect(*in_window(runs.main, "rotational_fraction", window), edges)
         count = found["fraction_count"].to_numpy()
         parts.append(density(count, int(found["number"]), edges, together))

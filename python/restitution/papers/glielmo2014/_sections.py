@@ -5,7 +5,8 @@ import numpy as np
 from restitution.figures import report as html
 from restitution.figures.report import Section
 from restitution.papers.claims import SIGNIFICANT
-from restitution.papers.glielmo2014._claims import deviations, gains_by_elongation
+from restitution.papers.estimate import deviations
+from restitution.papers.glielmo2014._claims import gains_by_elongation
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 from restitution.papers.report import number

@@ -1,13 +1,10 @@
 """The speeds of Figs. 4 and 5: one lattice fine enough for all of them, so that one run counts for all."""
 
-from collections.abc import Iterable, Iterator
-
 import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import FloatArray, IntArray
 from restitution.papers.glielmo2014._settings import Settings
-from restitution.papers.histograms import mesh
 
 
 def histogram_edges(s: Settings, width: float) -> FloatArray:
@@ -17,31 +14,25 @@ def histogram_edges(s: Settings, width: float) -> FloatArray:
 
 
 def lattice(s: Settings) -> tuple[FloatArray, FloatArray]:
-    """Return edges of velocity (m/s) and restitution among which are those of every window and histogram."""
-    windows = np.ravel(s.speed_windows)
-    widths = s.histogram_widths
-    bins = s.histogram_bins // 2 * round(max(widths) / _finest(widths))
+    """Return edges of velocity (m/s), every other bin of which is a window, and those of all histograms."""
+    bins = s.histogram_bins // 2 * round(max(s.histogram_widths) / _finest(s))
     steps = np.arange(-bins, bins + 1, dtype=np.float64)
-    return mesh(windows.min(), windows.max(), _finest(windows)), s.normal + _finest(widths) * steps
+    return np.ravel(s.speed_windows), s.normal + _finest(s) * steps
 
 
-def at_speeds(counted: xr.Dataset, s: Settings) -> Iterator[xr.Dataset]:
-    """From statistics on the `lattice`, yield the counts of the impacts in the window of each speed."""
-    edges = counted["velocity_edges"].to_numpy()
-    for window in s.speed_windows:
-        low, high = (int(np.argmin(np.abs(edges - v))) for v in window)
-        inside = counted[["restitution_count", "fraction_count", "number"]].isel(velocity=slice(low, high))
-        yield inside.sum("velocity")
+def at_speeds(counted: xr.Dataset) -> list[xr.Dataset]:
+    """From statistics on the `lattice`, return those of the impacts in the window of each speed."""
+    return [counted.isel(velocity=k) for k in range(0, counted.sizes["velocity"], 2)]
 
 
 def coarse(count: IntArray, s: Settings, width: float) -> IntArray:
     """Put the bins of the `lattice` together to those of `histogram_edges`."""
-    many = round(width / _finest(s.histogram_widths))
+    many = round(width / _finest(s))
     half, middle = s.histogram_bins // 2 * many, count.size // 2
     summed: IntArray = count[middle - half : middle + half].reshape(-1, many).sum(axis=1)
     return summed
 
 
-def _finest(values: Iterable[float]) -> float:
-    """Return the largest step of which all values are multiples, if all are whole millionths."""
-    return float(np.gcd.reduce(np.rint(1e6 * np.array(list(values))).astype(np.int64))) / 1e6
+def _finest(s: Settings) -> float:
+    """Return the largest step of which all widths are multiples, if all are whole millionths."""
+    return float(np.gcd.reduce(np.rint(1e6 * np.array(s.histogram_widths)).astype(np.int64))) / 1e6

@@ -1,30 +1,24 @@
 """Claims of PRE 90, 052204 and of the abstract of its ref. 10 about rough spheres, each sentence judged."""
 
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
 import xarray as xr
 
 from restitution.figures.report import grouped
+from restitution.papers import shape
 from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
-from restitution.papers.estimate import Array, Estimate, in_windows, jackknife
-from restitution.papers.gunkelmann2014._data import mean_share
+from restitution.papers.estimate import Array, Estimate, deviations, in_windows, jackknife
 from restitution.papers.gunkelmann2014._runs import Runs
 from restitution.papers.gunkelmann2014._settings import Settings
 from restitution.papers.runs import derived_seed
-from restitution.papers.shape import LAPLACE_RULE, Shape, shapes, tests
-from restitution.papers.successive import followed, following
-from restitution.papers.trend import RISING_RULE, falling, trend
+from restitution.papers.shape import Shape, shapes
+from restitution.papers.trend import RISING_RULE, Falling, falling, trend
 
 CLAIMS: Claims[Runs, Settings] = Claims()
 SPEED_BINS = 14
 _MONTAINE = "abstract of ref. 10 (PRE 84, 041306)"
-
-
-def deviations(data: xr.Dataset, s: Settings) -> Estimate:
-    """Return σ(ε) in the windows of the four speeds."""
-    impacts = in_windows(data["impact_velocity"], s.speed_windows)
-    return impacts.deviations(impacts.of(data["restitution"]))
 
 
 def _shapes(runs: Runs, s: Settings, data: xr.Dataset) -> list[Shape]:
@@ -58,42 +52,19 @@ def non_gaussian(runs: Runs, s: Settings) -> Finding:
 )
 def two_exponentials(runs: Runs, s: Settings) -> Finding:
     shapes = _shapes(runs, s, runs.main)
-    measured = [
-        measurement
+    by_speed = "; ".join(
+        f"at {one.label} it {one.verdict}, with flanks exp(−|x|^k), k = {one.exponent[0]:.3f} ± "
+        f"{one.exponent[1]:.3f}"
         for one in shapes
-        for measurement in (
-            Measurement("independent draws", float(one.goodness.fit.samples), at=one.label),
-            *tests(one),
-            *(
-                Measurement(
-                    f"gain in ln L an impact over {name}", c.difference, c.standard_error, at=one.label
-                )
-                for name, c in one.rivals.items()
-            ),
-        )
-    ]
-    verdicts = [one.verdict for one in shapes]
-    return Finding(
-        measured=tuple(measured),
-        verdict=verdict(all(v == "holds" for v in verdicts), any(v != "fails" for v in verdicts)),
-        rule=LAPLACE_RULE,
-        why="; ".join(
-            f"at {one.label} it {one.verdict}, with flanks exp(−|x|^k), k = {one.exponent[0]:.3f} ± "
-            f"{one.exponent[1]:.3f}"
-            for one in shapes
-        ).capitalize()
-        + ".",
     )
+    return shape.laplace(shapes, f"{by_speed.capitalize()}.")
 
 
 @CLAIMS.add("different-slope", "two exponential functions … of different slope", _MONTAINE)
 def different_slope(runs: Runs, s: Settings) -> Finding:
     shapes = _shapes(runs, s, runs.main)
-    clear = [abs(value) > SIGNIFICANT * error for value, error in (one.asymmetry for one in shapes)]
-    contact = s.contact()
-    exact = []
-    for v in s.speeds:  # 2 ln κ of SciPy's parameter κ
-        exact.append(-2.0 * float(np.log(s.density(contact, v).args[0])))
+    clear = [one.skewed for one in shapes]
+    exact = [-2.0 * float(np.log(s.density(v).args[0])) for v in s.speeds]  # SciPy's parameter is √(b/a)
     return Finding(
         measured=(
             *(Measurement("ln(a/b)", *one.asymmetry, at=one.label) for one in shapes),
@@ -116,9 +87,9 @@ def different_slope(runs: Runs, s: Settings) -> Finding:
 )
 def energy_transfer(runs: Runs, s: Settings) -> Finding:
     """Correlate ε with what the rotational share does from this impact to the next one."""
-    impacts = followed(in_windows(runs.main["impact_velocity"], s.speed_windows), runs.main)
+    impacts = in_windows(runs.main["impact_velocity"], s.speed_windows).followed(runs.main)
     share = runs.main["rotational_fraction"].to_numpy()
-    change = following(impacts, share) - impacts.of(share)
+    change = impacts.following(share) - impacts.of(share)
     found = impacts.correlations(impacts.of(runs.main["restitution"]), change)
     negative = found.beyond(0.0) < -SIGNIFICANT
     return Finding(
@@ -140,18 +111,24 @@ def energy_transfer(runs: Runs, s: Settings) -> Finding:
 def scatter_grows(runs: Runs, s: Settings) -> Finding:
     bins = falling(runs.main, s.velocity_range[0], SPEED_BINS)
     sigma = bins.impacts.deviations(bins.impacts.of(runs.main["restitution"]))
-    found, shown = trend(sigma), slice(None, None, 3)
-    contact = s.contact()
-    exact = [float(s.density(contact, v).std()) for v in bins.speeds]
+    exact = [float(s.density(v).std()) for v in bins.speeds]
+    return _grows(bins, ("σ(ε)", "σ(ε)"), sigma, exact)
+
+
+def _grows(
+    bins: Falling, names: tuple[str, str], found: Estimate, exact: Sequence[float], of: str = ""
+) -> Finding:
+    """Judge whether what has these names, in a table and in a sentence, grows as the velocity falls."""
+    (name, what), course, shown = names, trend(found), slice(None, None, 3)
     return Finding(
         measured=(
-            *listed("σ(ε)", bins.labels[shown], sigma.take(shown)),
-            *listed("σ(ε) in closed form", bins.labels[shown], exact[shown]),
-            found.step,
+            *listed(name, bins.labels[shown], found.take(shown)),
+            *listed(f"{name} in closed form", bins.labels[shown], exact[shown]),
+            course.step,
         ),
-        verdict=found.verdict,
-        rule=f"{SPEED_BINS} logarithmic bins of impact velocity, fastest first. {RISING_RULE}",
-        why=f"σ(ε) goes from {sigma.value[0]:.2g} at {bins.labels[0]} to {sigma.value[-1]:.2g} at "
+        verdict=course.verdict,
+        rule=f"{of}{SPEED_BINS} logarithmic bins of impact velocity, fastest first. {RISING_RULE}",
+        why=f"{what} goes from {found.value[0]:.2g} at {bins.labels[0]} to {found.value[-1]:.2g} at "
         f"{bins.labels[-1]}.",
     )
 
@@ -160,8 +137,7 @@ def scatter_grows(runs: Runs, s: Settings) -> Finding:
 def superelastic(runs: Runs, s: Settings) -> Finding:
     impacts = in_windows(runs.main["impact_velocity"], s.speed_windows)
     share = impacts.means((impacts.of(runs.main["restitution"]) > 1.0).astype(np.float64))
-    contact = s.contact()
-    exact = [float(s.density(contact, v).sf(1.0)) for v in s.speeds]
+    exact = [float(s.density(v).sf(1.0)) for v in s.speeds]
     some = (share.value > SIGNIFICANT * share.error) & (share.value > 0.0)
     return Finding(
         measured=(*listed("P(ε > 1)", s.labels, share), *listed("P(ε > 1) in closed form", s.labels, exact)),
@@ -180,11 +156,11 @@ def superelastic(runs: Runs, s: Settings) -> Finding:
     "Sec. I, there of dilute gases",
 )
 def independence(runs: Runs, s: Settings) -> Finding:
-    impacts = followed(in_windows(runs.main["impact_velocity"], s.speed_windows), runs.main)
+    impacts = in_windows(runs.main["impact_velocity"], s.speed_windows).followed(runs.main)
     e = runs.main["restitution"].to_numpy()
-    signed = impacts.correlations(impacts.of(e), following(impacts, e))
+    signed = impacts.correlations(impacts.of(e), impacts.following(e))
     away = np.abs(e - s.normal)
-    sizes = impacts.correlations(impacts.of(away), following(impacts, away))
+    sizes = impacts.correlations(impacts.of(away), impacts.following(away))
     free = np.abs(signed.beyond(0.0)) < SIGNIFICANT
     weak = np.abs(signed.value) < 0.1
     return Finding(
@@ -208,21 +184,8 @@ def independence(runs: Runs, s: Settings) -> Finding:
 def rotation_grows(runs: Runs, s: Settings) -> Finding:
     bins = falling(runs.main, s.velocity_range[0], SPEED_BINS)
     share = bins.impacts.means(bins.impacts.of(runs.main["rotational_fraction"]))
-    found, shown = trend(share), slice(None, None, 3)
-    contact = s.contact()
-    exact = [mean_share(s, contact, v) for v in bins.speeds]
-    return Finding(
-        measured=(
-            *listed("mean E_rot/E_tot", bins.labels[shown], share.take(shown)),
-            *listed("mean E_rot/E_tot in closed form", bins.labels[shown], exact[shown]),
-            found.step,
-        ),
-        verdict=found.verdict,
-        rule=f"The share E_rot/E_tot in {SPEED_BINS} logarithmic bins of impact velocity, fastest first. "
-        f"{RISING_RULE}",
-        why=f"The mean share goes from {share.value[0]:.2g} at {bins.labels[0]} to {share.value[-1]:.2g} at "
-        f"{bins.labels[-1]}.",
-    )
+    exact = [s.mean_share(v) for v in bins.speeds]
+    return _grows(bins, ("mean E_rot/E_tot", "The mean share"), share, exact, "The share E_rot/E_tot in ")
 
 
 @CLAIMS.add(
@@ -282,7 +245,7 @@ def number_of_asperities(runs: Runs, s: Settings) -> Finding:
     for name, by, contacts in (("N", runs.by_number, numbers), ("⟨h⟩", runs.by_height, heights)):
         found = [deviations(data, s).take([k]) for data in by.values()]
         sigma, error = (np.array([getattr(one, part)[0] for one in found]) for part in ("value", "error"))
-        exact = np.array([float(s.density(contact, v).std()) for contact in contacts])
+        exact = np.array([float(s.density(v, contact).std()) for contact in contacts])
         x = np.log(np.array(list(by), dtype=np.float64))
         slope, closed, uncertain = _slopes(x, np.log([sigma, exact]), error / sigma)
         slopes += [slope, closed]

@@ -8,12 +8,12 @@ import xarray as xr
 
 from restitution import fit
 from restitution.analytic import RoughContact
-from restitution.papers.estimate import Estimate
+from restitution.papers.estimate import Array, Estimate, Impacts
 from restitution.papers.figures import counted, recorded
 from restitution.papers.gunkelmann2014._runs import Runs
 from restitution.papers.gunkelmann2014._settings import Settings
 from restitution.papers.histograms import binned, density, design_effect, in_window
-from restitution.papers.trend import Falling, falling
+from restitution.papers.trend import falling
 
 
 def lattice(runs: Runs, s: Settings) -> xr.Dataset:
@@ -34,7 +34,7 @@ def densities(runs: Runs, s: Settings) -> xr.Dataset:
         points = np.sort(np.append(np.linspace(edges[0], edges[-1], 400), fitted.parameters["location"]))
         part["point"] = ("at", points)
         part["fit_density"] = ("at", fitted.pdf(points))
-        part["closed_density"] = ("at", s.density(s.contact(), speed).pdf(points))
+        part["closed_density"] = ("at", s.density(speed).pdf(points))
         for name, value in fitted.parameters.items():
             part[f"fit_{name}"] = value
         parts.append(part)
@@ -45,42 +45,23 @@ def densities(runs: Runs, s: Settings) -> xr.Dataset:
 def deviations(runs: Runs, s: Settings) -> xr.Dataset:
     """Return σ against impact velocity, by number and by mean height, and the closed forms."""
 
-    def measure(bins: Falling, data: xr.Dataset) -> Estimate:
-        return bins.impacts.deviations(bins.impacts.of(data["restitution"]))
+    def closed(speed: float, contact: RoughContact) -> float:
+        return float(s.density(speed, contact).std())
 
-    def closed(contact: RoughContact, speed: float) -> float:
-        return float(s.density(contact, speed).std())
-
-    return _curves(runs, s, measure, closed)
+    return _curves(runs, s, "restitution", Impacts.deviations, closed)
 
 
 def rotation(runs: Runs, s: Settings) -> xr.Dataset:
     """Return the mean rotational share against impact velocity, by number and by mean height."""
-
-    def measure(bins: Falling, data: xr.Dataset) -> Estimate:
-        return bins.impacts.means(bins.impacts.of(data["rotational_fraction"]))
-
-    def closed(contact: RoughContact, speed: float) -> float:
-        return mean_share(s, contact, speed)
-
-    return _curves(runs, s, measure, closed)
-
-
-def mean_share(s: Settings, contact: RoughContact, speed: float) -> float:
-    """Return <E_rot/E_tot> of a Gaussian spin; the contact keeps its tangential velocity, 0, so v_h = ωR.
-
-    With x = Jω_h²/mv², exponential with the mean ξ, the share is x/(x(1 + mR²/J) + 1).
-    """
-    nodes, weights = np.polynomial.laguerre.laggauss(64)
-    x = nodes * 2.0 * 0.4 * (s.spin(contact, speed) * s.radius / speed) ** 2
-    return float(weights @ (x / (x * (1.0 + 1.0 / 0.4) + 1.0)))
+    return _curves(runs, s, "rotational_fraction", Impacts.means, s.mean_share)
 
 
 def _curves(
     runs: Runs,
     s: Settings,
-    measure: Callable[[Falling, xr.Dataset], Estimate],
-    closed: Callable[[RoughContact, float], float],
+    of: str,
+    measure: Callable[[Impacts, Array], Estimate],
+    closed: Callable[[float, RoughContact], float],
 ) -> xr.Dataset:
     """Measure every run of both sets in bins of impact velocity, and evaluate the closed form there."""
 
@@ -88,8 +69,8 @@ def _curves(
         parts = []
         for value, data in by.items():
             bins = falling(data, s.velocity_range[0], s.curve_bins)
-            found = measure(bins, data)
-            exact = [closed(contact(value), v) for v in bins.speeds]
+            found = measure(bins.impacts, bins.impacts.of(data[of]))
+            exact = [closed(v, contact(value)) for v in bins.speeds]
             parts.append(
                 xr.Dataset(
                     {

@@ -70,18 +70,28 @@ class Settings(AtSpeeds, settings.Settings):
             radius=self.radius, asperities=number, asperity_radius=self.asperity_radius, **heights
         )
 
-    def spin(self, contact: RoughContact, speed: float) -> float:
+    def spin(self, speed: float, contact: RoughContact) -> float:
         """Return σ_ω of a horizontal component at this speed since the release (docs/rough.md, 12)."""
         release = self.release_speed
         return rough_spin(
             self.law, contact, speed=min(speed, release), release_speed=release, radius=self.radius
         )
 
-    def density(self, contact: RoughContact, speed: float) -> Any:
-        """Return p(ε | v) in closed form, frozen (docs/rough.md, 11)."""
-        return rough_impact(
-            self.law, contact, speed=speed, spin=self.spin(contact, speed), radius=self.radius
-        )
+    def density(self, speed: float, contact: RoughContact | None = None) -> Any:
+        """Return p(ε | v) in closed form, frozen (docs/rough.md, 11); of the main run unless told."""
+        contact = contact or self.contact()
+        spin = self.spin(speed, contact)
+        return rough_impact(self.law, contact, speed=speed, spin=spin, radius=self.radius)
+
+    def mean_share(self, speed: float, contact: RoughContact | None = None) -> float:
+        """Return <E_rot/E_tot> of a Gaussian spin; the contact keeps its tangential velocity, 0: v_h = ωR.
+
+        With x = Jω_h²/mv², exponential with the mean ξ, the share is x/(x(1 + mR²/J) + 1).
+        """
+        nodes, weights = np.polynomial.laguerre.laggauss(64)
+        spin = self.spin(speed, contact or self.contact())
+        x = nodes * 2.0 * 0.4 * (spin * self.radius / speed) ** 2
+        return float(weights @ (x / (x * (1.0 + 1.0 / 0.4) + 1.0)))
 
     def body(self, asperities: int | None = None, mean_height: float | None = None) -> RoughSphere:
         """Make a sphere: with equal heights if the number of asperities is given, else with random ones."""

@@ -11,9 +11,8 @@ from restitution.papers.glielmo2014._claims import (
     _unsaid,
 )
 from restitution.papers.glielmo2014._claims._energy import gains_by_elongation
-from restitution.papers.glielmo2014._claims._scatter import deviations
 
-__all__ = ["CLAIMS", "deviations", "gains_by_elongation"]
+__all__ = ["CLAIMS", "gains_by_elongation"]
 
 CLAIMS = Claims(
     _scatter.CLAIMS,

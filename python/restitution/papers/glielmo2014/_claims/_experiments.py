@@ -1,14 +1,13 @@
 """Claims on bouncing-ball experiments: the effect of the shape and all other errors (Secs. I, III and V)."""
 
 import math
-from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise, product
 
 import numpy as np
 import xarray as xr
 
-from restitution.bodies import ball_grade, from_roundness
+from restitution.bodies import Body, ball_grade, from_roundness
 from restitution.experiment.budget import error_budget
 from restitution.laws import Frictionless, TangentialRestitution
 from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
@@ -16,7 +15,6 @@ from restitution.papers.estimate import in_windows
 from restitution.papers.glielmo2014._claims._scatter import by_elongation
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
-from restitution.papers.successive import followed, following
 
 CLAIMS: Claims[Runs, Settings] = Claims()
 TIMING, GRAVITY_ERROR, DROP_ERROR, TILT, SPIN = 10e-6, 0.01, 1e-3, 2e-3, 2.0
@@ -29,25 +27,15 @@ FEWEST = 100
 """Impacts from which a standard deviation is compared: it is known to 7 % then."""
 
 
-@dataclass(frozen=True)
-class Ball:
-    """A ball that experiments use: diameter and out-of-roundness in m, density in kg/m³."""
-
-    name: str
-    diameter: float
-    out_of_roundness: float
-    density: float
-
-
-def _balls(settings: Settings) -> tuple[Ball, ...]:
-    bearings = tuple(
-        Ball(f"steel, grade {grade}", 6e-3, ball_grade(grade), STEEL) for grade in (10, 100, 200, 1000)
-    )
-    # L is 2t, so that t/D is a quarter of L/R.
-    beads = tuple(
-        Ball(f"glass, L/R = {x:g}", 6e-3, 0.25 * x * 6e-3, GLASS) for x in settings.bead_elongations
-    )
-    return (*bearings, *beads, Ball("marble, t = 0.1 mm", 16e-3, 0.1e-3, GLASS))
+def _balls(settings: Settings) -> dict[str, Body]:
+    """Make balls that experiments use, of a diameter and an out-of-roundness in m."""
+    balls = {
+        f"steel, grade {grade}": from_roundness(6e-3, ball_grade(grade), density=STEEL)
+        for grade in (10, 100, 200, 1000)
+    }
+    for x in settings.bead_elongations:  # L is 2t, so that t/D is a quarter of L/R
+        balls[f"glass, L/R = {x:g}"] = from_roundness(6e-3, 0.25 * x * 6e-3, density=GLASS)
+    return balls | {"marble, t = 0.1 mm": from_roundness(16e-3, 0.1e-3, density=GLASS)}
 
 
 @cache
@@ -61,9 +49,9 @@ def _shares(settings: Settings) -> dict[str, tuple[float, float]]:
         "paper's law": TangentialRestitution(normal=NORMAL, tangential=settings.tangential),
         "frictionless": Frictionless(normal=NORMAL),
     }
-    for ball, (name, law) in product(_balls(settings), laws.items()):
+    for (ball, body), (name, law) in product(_balls(settings).items(), laws.items()):
         data = error_budget(
-            from_roundness(ball.diameter, ball.out_of_roundness, density=ball.density),
+            body,
             law,
             drop=DROP,
             impacts=COEFFICIENTS,
@@ -79,7 +67,7 @@ def _shares(settings: Settings) -> dict[str, tuple[float, float]]:
             data.parameter_standard_deviation.isel(parameter=0),
         )
         by_shape = ["shape", "spin", "tilt"]
-        found[f"{ball.name}, {name}"] = (_share(one, by_shape), _share(fitted, by_shape))
+        found[f"{ball}, {name}"] = (_share(one, by_shape), _share(fitted, by_shape))
     return found
 
 
@@ -183,9 +171,9 @@ def regime(runs: Runs, settings: Settings) -> Finding:
     found = {}
     measured: list[Measurement] = []
     for elongation, data in runs.beads.items():
-        impacts = followed(in_windows(data["impact_velocity"], settings.speed_windows), data)
+        impacts = in_windows(data["impact_velocity"], settings.speed_windows).followed(data)
         tilt = np.abs(np.cos(data["angle"].to_numpy()))
-        one = impacts.correlations(impacts.of(tilt), following(impacts, tilt))
+        one = impacts.correlations(impacts.of(tilt), impacts.following(tilt))
         found[elongation] = np.abs(one.beyond(0.0)) > SIGNIFICANT
         measured += listed(
             f"correlation of |cos θ| at successive impacts, L/R = {elongation:g}", settings.labels, one

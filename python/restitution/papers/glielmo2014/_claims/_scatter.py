@@ -3,11 +3,10 @@
 from itertools import pairwise
 
 import numpy as np
-import xarray as xr
 
 from restitution._internal.text import with_error
 from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
-from restitution.papers.estimate import Estimate, in_bins, in_windows
+from restitution.papers.estimate import Estimate, deviations, in_bins
 from restitution.papers.glielmo2014._claims._energy import energies
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
@@ -17,12 +16,6 @@ CLAIMS: Claims[Runs, Settings] = Claims()
 SPEED_BINS = 15
 ROUND_OFF = 1e-12
 """ε at a first impact is a quotient of a few rounded numbers of order 1."""
-
-
-def deviations(data: xr.Dataset, settings: Settings) -> Estimate:
-    """Return σ(ε) in the windows of the four speeds."""
-    impacts = in_windows(data["impact_velocity"], settings.speed_windows)
-    return impacts.deviations(impacts.of(data["restitution"]))
 
 
 def by_elongation(runs: Runs, settings: Settings) -> dict[float, Estimate]:

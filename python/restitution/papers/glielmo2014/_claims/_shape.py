@@ -4,13 +4,13 @@ from functools import partial
 
 import numpy as np
 
+from restitution.papers import shape
 from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
 from restitution.papers.estimate import Array, Impacts, in_windows
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 from restitution.papers.runs import derived_seed
-from restitution.papers.shape import LAPLACE_RULE, Shape, shapes, tests
-from restitution.papers.successive import followed, following
+from restitution.papers.shape import Shape, shapes, tests
 from restitution.papers.trend import falling
 
 CLAIMS: Claims[Runs, Settings] = Claims()
@@ -31,37 +31,18 @@ def _shapes(runs: Runs, settings: Settings) -> list[Shape]:
 )
 def laplace(runs: Runs, settings: Settings) -> Finding:
     shapes = _shapes(runs, settings)[1:]
-    measured = []
-    for one in shapes:
-        good = one.goodness
-        measured += [
-            Measurement("independent draws", float(good.fit.samples), at=one.label),
-            *tests(one),
-            *(
-                Measurement(
-                    f"gain in ln L an impact over {name}", c.difference, c.standard_error, at=one.label
-                )
-                for name, c in one.rivals.items()
-            ),
-        ]
-    verdicts = [one.verdict for one in shapes]
     by_speed = "; ".join(
         f"at {one.label} it {one.verdict} (flanks exp(−|x|^k) with k = {one.exponent[0]:.3g}, in the tails "
         f"{100 * one.tails[0] ** 2:.0f} % of the impacts that the fit has there)"
         for one in shapes
     )
-    return Finding(
-        measured=tuple(measured),
-        verdict=verdict(all(v == "holds" for v in verdicts), any(v != "fails" for v in verdicts)),
-        rule=LAPLACE_RULE,
-        why=f"{by_speed[0].upper()}{by_speed[1:]}.",
-    )
+    return shape.laplace(shapes, f"{by_speed[0].upper()}{by_speed[1:]}.")
 
 
 @CLAIMS.add("asymmetric", "(asymmetric Laplace function)", "Sec. III, Fig. 4")
 def asymmetric(runs: Runs, settings: Settings) -> Finding:
     shapes = _shapes(runs, settings)[1:]
-    clear = [abs(value) > SIGNIFICANT * error for value, error in (one.asymmetry for one in shapes)]
+    clear = [one.skewed for one in shapes]
     return Finding(
         measured=tuple(Measurement("ln(a/b)", *one.asymmetry, at=one.label) for one in shapes),
         verdict=verdict(all(clear), any(clear)),
@@ -102,7 +83,7 @@ def deviates(runs: Runs, settings: Settings) -> Finding:
 def _changes(impacts: Impacts, runs: Runs) -> Array:
     """1.0 where the next impact is on the other sphere, else 0.0."""
     contact = runs.main["contact"].to_numpy()
-    return np.not_equal(impacts.of(contact), following(impacts, contact)).astype(np.float64)
+    return np.not_equal(impacts.of(contact), impacts.following(contact)).astype(np.float64)
 
 
 @CLAIMS.add(
@@ -112,12 +93,12 @@ def _changes(impacts: Impacts, runs: Runs) -> Array:
     "Sec. III, Fig. 4 (0.1 m/s)",
 )
 def independent(runs: Runs, settings: Settings) -> Finding:
-    impacts = followed(in_windows(runs.main["impact_velocity"], settings.speed_windows), runs.main)
+    impacts = in_windows(runs.main["impact_velocity"], settings.speed_windows).followed(runs.main)
     tilt = np.abs(np.cos(runs.main["angle"].to_numpy()))
     e = runs.main["restitution"].to_numpy()
     change = impacts.means(_changes(impacts, runs))
-    orientation = impacts.correlations(impacts.of(tilt), following(impacts, tilt))
-    restitution = impacts.correlations(impacts.of(e), following(impacts, e))
+    orientation = impacts.correlations(impacts.of(tilt), impacts.following(tilt))
+    restitution = impacts.correlations(impacts.of(e), impacts.following(e))
     scores = np.array([change.beyond(0.5), orientation.beyond(0), restitution.beyond(0)])
     dependent = np.max(np.abs(scores), axis=0) > SIGNIFICANT
     slowest = settings.labels[0]
@@ -143,10 +124,10 @@ def independent(runs: Runs, settings: Settings) -> Finding:
     "Sec. III",
 )
 def sphere_to_sphere(runs: Runs, settings: Settings) -> Finding:
-    at = followed(in_windows(runs.main["impact_velocity"], settings.speed_windows[:1]), runs.main)
+    at = in_windows(runs.main["impact_velocity"], settings.speed_windows[:1]).followed(runs.main)
     named = at.means(_changes(at, runs))
     bins = falling(runs.main, 1e-3, SLOW_BINS)
-    impacts = followed(bins.impacts, runs.main)
+    impacts = bins.impacts.followed(runs.main)
     change = impacts.means(_changes(impacts, runs))
     slow = [int(k) for k in np.flatnonzero(bins.speeds < settings.speed_windows[0][0])]
     slower = change.take(slow)

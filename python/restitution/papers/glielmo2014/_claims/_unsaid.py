@@ -7,8 +7,7 @@ import xarray as xr
 from scipy import stats
 
 from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
-from restitution.papers.estimate import Estimate, in_blocks, in_windows
-from restitution.papers.glielmo2014._claims._scatter import deviations
+from restitution.papers.estimate import Estimate, deviations, in_blocks, in_windows
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 from restitution.papers.runs import derived_seed
