@@ -270,9 +270,7 @@ def slopes(
         times = random.multinomial(particles, equal)
         for i, (particle, x) in fitted.items():
             drawn[i, k] = _again(x, times[particle], location)
-    # A draw without any of the bin's particles leaves nan.
-    errors = np.array([_deviation(one) for one in drawn])
-    return _assembled(edges, fits, near, errors, drawn, members)
+    return _assembled(edges, fits, near, drawn, members)
 
 
 def _again(x: Array, times: NDArray[np.int64], location: float | None) -> list[float]:
@@ -305,13 +303,12 @@ def _from_counts(statistics: xr.Dataset, location: float | None) -> Slopes:
         counts = Counts.at(statistics, float(edges[i]))
         one = asymmetric_laplace(counts, location)
         fits[i], near[i] = one, float(np.max(np.abs(counts.cumulative() - one.cdf(counts.edges))))
-    unknown = np.full((rows, len(_NAMES)), np.nan)
-    return _assembled(edges, fits, near, unknown, np.empty((rows, 0, len(_NAMES))), np.full(rows, np.nan))
+    return _assembled(edges, fits, near, np.empty((rows, 0, len(_NAMES))), np.full(rows, np.nan))
 
 
-def _assembled(
-    edges: Array, fits: list[Fit | None], near: Array, errors: Array, drawn: Array, particles: Array
-) -> Slopes:
+def _assembled(edges: Array, fits: list[Fit | None], near: Array, drawn: Array, particles: Array) -> Slopes:
+    # A draw without any of the bin's particles leaves nan.
+    errors = np.array([_deviation(one) for one in drawn])
     columns = {name: [np.nan if one is None else one.parameters[name] for one in fits] for name in _NAMES}
     columns |= {f"{name}_error": errors[:, i].tolist() for i, name in enumerate(_NAMES)}
     columns |= {"ks_distance": near.tolist(), "samples": [0 if one is None else one.samples for one in fits]}
