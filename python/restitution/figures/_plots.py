@@ -28,8 +28,12 @@ from restitution.figures.check import check_drawable
 from restitution.figures.pieces import line, plain_log, population, population_bar
 from restitution.figures.style import (
     COLORS,
+    DEVIATION,
+    FRACTION,
     MARKERS,
     PAGE,
+    RESTITUTION,
+    VELOCITY,
     Style,
     colors,
     column,
@@ -46,10 +50,6 @@ if TYPE_CHECKING:
     from restitution.analytic import FirstImpact
     from restitution.distribution import FluctuatingRestitution
 
-VELOCITY = r"impact velocity $v_G^n$ (m/s)"
-RESTITUTION = r"coefficient of restitution $\varepsilon$"
-FRACTION = r"$E_\mathrm{rot}/E_\mathrm{tot}$"
-DEVIATION = r"standard deviation $\sigma(\varepsilon)$"
 MOST = 24
 """Lines of a figure, which differ by colour and by marker or stroke."""
 

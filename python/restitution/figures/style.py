@@ -38,6 +38,12 @@ _COLORMAP_ON_DARK = LinearSegmentedColormap.from_list(
     "viridis on dark", mpl.colormaps[COLORMAP](np.linspace(0.25, 1.0, 256))
 )
 
+VELOCITY = r"impact velocity $v_G^n$ (m/s)"
+RESTITUTION = r"coefficient of restitution $\varepsilon$"
+FRACTION = r"$E_\mathrm{rot}/E_\mathrm{tot}$"
+DEVIATION = r"standard deviation $\sigma(\varepsilon)$"
+"""Labels of axes."""
+
 Style: TypeAlias = Literal["paper", "page", "slides", "paper-dark", "page-dark", "slides-dark"]
 """Purposes of a figure: a journal, a page on a screen, or slides; the last three on a dark ground."""
 SITE: tuple[Style, ...] = ("page", "page-dark")

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from scipy import stats
 
 from restitution import fit
 from restitution.papers.claims import SIGNIFICANT, Finding, Measurement, Verdict, verdict
@@ -84,13 +85,10 @@ def shapes(data: xr.Dataset, windows: Windows, labels: Sequence[str], seed: int)
 def shape(label: str, values: Array, particle: Index, independent: Array, seed: int) -> Shape:
     """Measure the density of values, some of which are independent draws, at most one of each particle."""
     laplace = fit.asymmetric_laplace(values)
-    ordered = np.sort(values)
-    model, n = laplace.cdf(ordered), values.size
-    rank = np.arange(n)
     return Shape(
         label,
         fit.goodness(fit.asymmetric_laplace, independent, resamples=RESAMPLES, seed=seed),
-        float(max(np.max((rank + 1) / n - model), np.max(model - rank / n))),
+        float(stats.kstest(laplace.cdf(values), "uniform", method="asymp").statistic),
         {
             one.family: fit.compare(laplace, one, values, particle)
             for one in (rival(values) for rival in RIVALS)

@@ -10,13 +10,12 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from restitution import figures as fg
-from restitution.figures.style import Style, colors, ink
+from restitution.figures.style import DEVIATION, FRACTION, RESTITUTION, VELOCITY, Style, colors, ink
 
 _LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "-", "-", "--", ":", "-")
 _VELOCITY_TICKS = (0.03, 0.1, 0.3, 1.0)
 _RANGE = (0.018, 1.1)
 _LETTERS = "abcdefghijklmn"
-_VELOCITY = r"impact velocity $v_G^n$ (m/s)"
 
 
 @fg.styled
@@ -55,11 +54,11 @@ def draw(data: xr.Dataset, *, style: Style | None = None) -> Figure:
             axes.set_xlim(*_RANGE)
             fg.plain_log(axes, _VELOCITY_TICKS)
     for axes in (*panels[2], *panels[3]):
-        axes.set_xlabel(_VELOCITY)
+        axes.set_xlabel(VELOCITY)
     labels = (
         rf"$p(\varepsilon\,|\,{float(data.attrs['speed']):g}$ m/s$)$",
-        r"standard deviation $\sigma(\varepsilon)$",
-        r"mean $E_\mathrm{rot}/E_\mathrm{tot}$",
+        DEVIATION,
+        f"mean {FRACTION}",
         "share creating energy",
     )
     letters = iter(_LETTERS)
@@ -105,7 +104,7 @@ def _density(axes: Axes, body: xr.Dataset) -> None:
     axes.set_ylim(max(low / 2, 1e-5 * top), 6 * top)
     half = float(body["restitution"][1] - body["restitution"][0]) / 2
     axes.set_xlim(float(body["restitution"][0]) - half, float(body["restitution"][-1]) + half)
-    axes.set_xlabel(r"coefficient of restitution $\varepsilon$")
+    axes.set_xlabel(RESTITUTION)
 
 
 def _by_velocity(axes: Axes, body: xr.Dataset, name: str) -> None:

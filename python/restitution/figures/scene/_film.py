@@ -133,17 +133,17 @@ class Film:
         path = path_for("name", name, FILM)
         if path.suffix.lower() not in (".gif", ".mp4"):
             raise ParameterError(wrong("name", str(path), f"the name of {FILM}"))
-        if path.suffix.lower() == ".mp4":
-            if not FFMpegWriter.isAvailable():
-                text = (
-                    f"{path}: .mp4 takes the program ffmpeg, which is not installed: "
-                    "get it from your system's packages or ffmpeg.org, or save the film as .gif"
-                )
-                raise RuntimeError(text)
-            with whole_file(path, replace=True) as draft:
+        video = path.suffix.lower() == ".mp4"
+        if video and not FFMpegWriter.isAvailable():
+            text = (
+                f"{path}: .mp4 takes the program ffmpeg, which is not installed: "
+                "get it from your system's packages or ffmpeg.org, or save the film as .gif"
+            )
+            raise RuntimeError(text)
+        with whole_file(path, replace=True) as draft:
+            if video:
                 self._save_mp4(draft)
-        else:
-            with whole_file(path, replace=True) as draft:
+            else:
                 draft.write_bytes(self._gif())
         return path
 
@@ -334,35 +334,24 @@ def animate(
 
 def _schedule(view: Sideview, data: xr.Dataset, particle: int) -> tuple[Frame, ...]:
     """Choose the time of each picture: flights fast, the neighbourhood of an impact slow, impacts at rest."""
-    first = int(np.searchsorted(data["time"].to_numpy()[particle], view.impacts[0].time, side="left"))
-    times = data["time"].to_numpy()[particle]
+    times, impacts = data["time"].to_numpy()[particle], view.impacts
+    first = int(np.searchsorted(times, impacts[0].time, side="left"))
     begin = times[first - 1] if first else 0.0
-    last = first + len(view.impacts)
-    end = times[last] if last < times.size and np.isfinite(times[last]) else view.impacts[-1].time
+    last = first + len(impacts)
+    end = times[last] if last < times.size and np.isfinite(times[last]) else impacts[-1].time
     far = solid.reach(view.body)
     gravity, incline = pull("data", data)
     gravity *= np.cos(incline)
-    knots = [_first_seen(view.impacts[0], begin, gravity, far)]
-    knots += [one.time for one in view.impacts]
-    knots.append(_last_seen(view.impacts[-1], end, gravity, far))
+    one, other = impacts[0], impacts[-1]
+    begin = max(begin, one.time - _duration(-float(one.velocity[0][1]), float(one.centre[1]), gravity, far))
+    end = min(end, other.time + _duration(float(other.velocity[1][1]), float(other.centre[1]), gravity, far))
     frames: list[Frame] = []
-    for k, one in enumerate(view.impacts):
-        frames += _flight(knots[k], one, None if k == 0 else view.impacts[k - 1], k, far)
-        still = round(RATE * _STILL)
+    still = round(RATE * _STILL)
+    for k, one in enumerate(impacts):
+        frames += _flight(begin, one.time, impacts[k - 1] if k else None, one, k, far)
         frames += [Frame(one.time, np.inf, k, k)] * (still // 3) + [Frame(one.time, np.inf, k, k + 1)] * still
-    frames += _after(view.impacts[-1], knots[-1], len(view.impacts), far)
-    return tuple(frames)
-
-
-def _first_seen(one: Impact, begin: float, gravity: float, far: float) -> float:
-    """Return when the flight before an impact is first low enough to be seen, or at its top."""
-    fall = -float(one.velocity[0][1])
-    return max(begin, one.time - _duration(fall, float(one.centre[1]), gravity, far))
-
-
-def _last_seen(one: Impact, end: float, gravity: float, far: float) -> float:
-    rise = float(one.velocity[1][1])
-    return min(end, one.time + _duration(rise, float(one.centre[1]), gravity, far))
+        begin = one.time
+    return (*frames, *_flight(begin, end, other, None, len(impacts), far))
 
 
 def _duration(speed: float, height: float, gravity: float, far: float) -> float:
@@ -386,24 +375,17 @@ def _pieces(begin: float, end: float, seconds: float, before: int) -> list[Frame
     return [Frame(float(t), slowed, None, before) for t in times]
 
 
-def _flight(begin: float, one: Impact, earlier: Impact | None, before: int, far: float) -> list[Frame]:
-    """Frames of a flight up to an impact; between two impacts it begins slowly, too."""
-    whole_time = one.time - begin
-    if whole_time <= 0.0:
+def _flight(
+    begin: float, end: float, earlier: Impact | None, later: Impact | None, before: int, far: float
+) -> list[Frame]:
+    """Frames of a flight, slow where it begins or ends with an impact."""
+    if end <= begin:
         return []
-    close = one.time - _near(float(np.linalg.norm(one.velocity[0])), far, whole_time)
-    frames = []
+    left, close = begin, end
     if earlier is not None:
-        left = begin + _near(float(np.linalg.norm(earlier.velocity[1])), far, whole_time)
-        frames += _pieces(begin, left, _NEAR, before)
-        begin = left
-    frames += _pieces(begin, close, _FLIGHT, before)
-    return frames + _pieces(close, one.time, _NEAR, before)
-
-
-def _after(one: Impact, end: float, before: int, far: float) -> list[Frame]:
-    whole_time = end - one.time
-    if whole_time <= 0.0:
-        return []
-    left = one.time + _near(float(np.linalg.norm(one.velocity[1])), far, whole_time)
-    return _pieces(one.time, left, _NEAR, before) + _pieces(left, end, _FLIGHT, before)
+        left += _near(float(np.linalg.norm(earlier.velocity[1])), far, end - begin)
+    if later is not None:
+        close -= _near(float(np.linalg.norm(later.velocity[0])), far, end - begin)
+    frames = [] if earlier is None else _pieces(begin, left, _NEAR, before)
+    frames += _pieces(left, close, _FLIGHT, before)
+    return frames if later is None else frames + _pieces(close, end, _NEAR, before)

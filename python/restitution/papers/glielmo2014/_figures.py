@@ -12,16 +12,13 @@ from matplotlib.ticker import MultipleLocator
 
 from restitution import figures as fg
 from restitution.figures.report import grouped
+from restitution.figures.style import DEVIATION, FRACTION, RESTITUTION, VELOCITY
 from restitution.papers.figures import Caption, PaperFigure, listing
 from restitution.papers.glielmo2014 import _data as data
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 
-_VELOCITY = r"impact velocity $v_G^n$ (m/s)"
-_RESTITUTION = r"coefficient of restitution $\varepsilon$"
-_FRACTION = r"$E_\mathrm{rot}/E_\mathrm{tot}$"
 _SPEED_TICKS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
-_DEVIATION = r"standard deviation $\sigma(\varepsilon)$"
 _BAND = "Band: ± one standard error, each particle counting as one draw; mostly narrower than the line."
 
 
@@ -48,7 +45,7 @@ def _restitution_histograms(drawn: xr.Dataset) -> Figure:
         axes.set_ylim(float(filled.min()) / 2, 4 * float(filled.max()))
         axes.set_xlim(float(part["edges"][0]), float(part["edges"][-1]))
         fg.letter(axes, f"({'abcd'[k]}) {float(part['speed']):g} m/s")
-        axes.set_xlabel(_RESTITUTION)
+        axes.set_xlabel(RESTITUTION)
         axes.set_ylabel(r"$p_\varepsilon$")
     panels[1][1].legend(loc="upper right", reverse=True)
     return figure
@@ -65,7 +62,7 @@ def _fraction_histograms(drawn: xr.Dataset) -> Figure:
     # Above the points there is room for the legend; an error bar may reach below them.
     filled = drawn["density"].where(drawn["density"] > 0)
     axes.set_ylim(float(filled.min()) / 2, 30 * float(filled.max()))
-    axes.set_xlabel(_FRACTION)
+    axes.set_xlabel(FRACTION)
     axes.set_ylabel(r"$p_{E_\mathrm{rot}/E_\mathrm{tot}}$")
     axes.legend(title="impact velocity", ncols=2, loc="upper right")
     return figure
@@ -76,7 +73,7 @@ def _bead_deviation(drawn: xr.Dataset) -> Figure:
     figure, [[axes]] = fg.panels(fg.COLUMN, 2.5)
     for k, x in enumerate(drawn["elongation"].to_numpy()):
         _deviation(axes, drawn.isel(elongation=k), "", k, f"$L/R = {x:g}$")
-    axes.set_ylabel(_DEVIATION)
+    axes.set_ylabel(DEVIATION)
     axes.legend()
     return figure
 
@@ -99,7 +96,7 @@ def _first_impact(drawn: xr.Dataset) -> Figure:
     below.axhline(0.0, color=fg.COLORS[1])
     reach = max(4.0, 1.2 * float(np.abs(drawn["pull"]).max()))
     below.set_ylim(-reach, reach)
-    below.set_xlabel(_RESTITUTION)
+    below.set_xlabel(RESTITUTION)
     below.set_ylabel("pull")
     below.set_xlim(-0.05, 0.42)
     for panel, text in ((axes, "(a)"), (below, "(b)")):
@@ -116,7 +113,7 @@ def _map_sensitivity(drawn: xr.Dataset) -> Figure:
             name = label if style == "-" else None
             axes.plot(drawn["velocity"], line, color=fg.COLORS[k], linestyle=style, label=name)
 
-    return _two_panels(drawn, quantiles, _RESTITUTION, "lower right")
+    return _two_panels(drawn, quantiles, RESTITUTION, "lower right")
 
 
 @fg.styled
@@ -124,7 +121,7 @@ def _deviation_sensitivity(drawn: xr.Dataset) -> Figure:
     def deviation(axes: Axes, axis: str, k: int, label: str) -> None:
         _deviation(axes, drawn.isel({axis: k}), f"_by_{axis}", k, label)
 
-    return _two_panels(drawn, deviation, _DEVIATION, "lower left")
+    return _two_panels(drawn, deviation, DEVIATION, "lower left")
 
 
 def _two_panels(
@@ -139,7 +136,7 @@ def _two_panels(
         for k, value in enumerate(drawn[axis].to_numpy()):
             draw(axes, axis, k, f"${symbol}$ = {1e3 * value:g} mm")
         fg.letter(axes, text, left=False)
-        axes.set_xlabel(_VELOCITY)
+        axes.set_xlabel(VELOCITY)
         axes.legend(loc=legend)
     panels[0].set_ylabel(quantity)
     return figure
@@ -155,7 +152,7 @@ def _deviation(axes: Axes, drawn: xr.Dataset, suffix: str, k: int, label: str) -
         drawn[name].to_numpy() for name in ("velocity", f"deviation{suffix}", f"deviation_error{suffix}")
     )
     fg.line(axes, x, np.where(y > 0, y, np.nan), error, color=fg.COLORS[k], marker=fg.MARKERS[k], label=label)
-    axes.set_xlabel(_VELOCITY)
+    axes.set_xlabel(VELOCITY)
     fg.plain_log(axes, _SPEED_TICKS)
     axes.set_yscale("log")
 
