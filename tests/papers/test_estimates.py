@@ -7,7 +7,6 @@ import xarray as xr
 import restitution as rs
 from restitution._internal.text import with_error
 from restitution.papers import estimate
-from restitution.papers.claims import Measurement
 from restitution.papers.glielmo2014._claims import _energy
 from restitution.papers.trend import trend
 
@@ -122,9 +121,3 @@ def test_numbers_are_written_to_two_digits_of_their_error(
     value: float, error: float | None, text: str
 ) -> None:
     assert with_error(value, error) == text
-
-
-def test_a_measurement_reads_as_a_line() -> None:
-    line = Measurement("σ(ε)", 0.0327, 0.0012, at="0.4 m/s")
-    assert str(line) == "σ(ε), 0.4 m/s = 0.0327 ± 0.0012"
-    assert str(Measurement("height", 0.17, unit="R")) == "height = 0.17 R"

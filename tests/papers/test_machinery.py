@@ -52,7 +52,6 @@ def simulate(s: Few, impacts: int, runner: Runner) -> One:
     return One(runner.seed, impacts, main)
 
 
-@fg.styled
 def draw(drawn: xr.Dataset) -> Figure:
     figure, [[axes]] = fg.panels(fg.COLUMN, 2.0)
     axes.plot(drawn["impact_velocity"].to_numpy().ravel(), drawn["restitution"].to_numpy().ravel(), ".")
@@ -85,6 +84,7 @@ PAPER = Paper(
     command="restitution made-up --out made-up",
     settings=Few(),
     least=100,
+    usual=200,
     number=1,
     simulate=simulate,
     about=lambda runs: "One figure.",

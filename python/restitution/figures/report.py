@@ -103,7 +103,8 @@ def _together(value: str) -> str:
 
 def paragraph(value: str, style: str = "") -> str:
     """Make a paragraph of `prose`."""
-    return f"<p{_class(style)}>{prose(value)}</p>"
+    mark = f' class="{style}"' if style else ""
+    return f"<p{mark}>{prose(value)}</p>"
 
 
 def table(
@@ -167,7 +168,3 @@ def save_with_data(figure: Figure, data: xr.Dataset, path: Path, title: str, cap
 def grouped(number: int) -> str:
     """Write a whole number with spaces between its thousands, which `prose` makes thin."""
     return f"{number:,}".replace(",", " ")
-
-
-def _class(style: str) -> str:
-    return f' class="{style}"' if style else ""

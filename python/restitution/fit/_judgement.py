@@ -91,20 +91,10 @@ def goodness(
 
     Parameters
     ----------
-    family : callable
-        A fit of this package, such as `asymmetric_laplace`, or any function from samples to a `Fit`.
-    samples : array_like, xarray.Dataset or sequence of Counts or xarray.Dataset
-        Statistically INDEPENDENT values, unless there are `clusters`; impacts as from `restitution.simulate`,
-        whose particles are known; or the counts, or statistics, of independent runs.
-    clusters : array_like of int, shape (n,), optional
-        Number of the particle that each value is from.
-    velocity : float or tuple of two floats, optional
-        For a Dataset, as in `asymmetric_laplace`.
+    family, samples, clusters, velocity, seed, **keywords
+        As in `bootstrap`; values without `clusters` must be statistically INDEPENDENT.
     resamples : int, default 199
         Draws for the bootstrap, ≥ 1; the p-value has the resolution 1/(resamples + 1).
-    seed : int, default 1
-    **keywords
-        Of the family, such as ``location=0.98``.
 
     Raises
     ------
@@ -129,16 +119,14 @@ def goodness(
     observed, reached = distances(fit, pool), np.ones(2)
     null = None if source.number == fit.samples else source.following(fit, random)
     for _ in range(resamples):
-        again, refit = refitted(family, null, random) if null else _drawn(family, fit, random)
+        if null:
+            again, refit = refitted(family, null, random)
+        else:
+            again = fit.rvs(fit.samples, random)
+            refit = family(again)
         reached += distances(refit, again) >= observed
     ks_p, ad_p = reached / (resamples + 1)
     return Goodness(fit, float(observed[0]), float(ks_p), float(observed[1]), float(ad_p), resamples)
-
-
-def _drawn(family: Callable[[Any], Fit], fit: Fit, random: np.random.Generator) -> tuple[Array, Fit]:
-    """Draw as many independent samples and fit them."""
-    draw = fit.rvs(fit.samples, random)
-    return draw, family(draw)
 
 
 def distances(fit: Fit, samples: Array | Counts) -> Array:

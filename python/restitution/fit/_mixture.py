@@ -19,6 +19,8 @@ from restitution.fit.source import Samples, Window, cusp, taken
 
 _NARROWEST = 1e-3
 """Least width of a part, over the spread of the samples: a narrower Gaussian would sit on one sample."""
+_BOUNDS = [(-12.0, 12.0), *[(log(_NARROWEST), 7.0)] * 2, (-10.0, 10.0), (log(_NARROWEST), 7.0)]
+"""Of a point of `_search`."""
 _SPREAD_OUT = 2000
 """Samples that stand for counts where the search begins."""
 
@@ -143,9 +145,8 @@ def _search(x: Array, spread: float, location: float) -> Array:
     centre = (float(np.mean(x)) - location) / spread
     starts = [[0.0, *widths, centre, 0.3], [0.0, *(w - 1.0 for w in widths), centre, -0.5]]
     y = (x - location) / spread
-    bounds = [(-12.0, 12.0), *[(log(_NARROWEST), 7.0)] * 2, (-10.0, 10.0), (log(_NARROWEST), 7.0)]
     found = [
-        optimize.minimize(_cost, point, args=(y,), jac=True, method="L-BFGS-B", bounds=bounds)
+        optimize.minimize(_cost, point, args=(y,), jac=True, method="L-BFGS-B", bounds=_BOUNDS)
         for point in starts
     ]
     return np.asarray(min(found, key=lambda one: float(one.fun)).x)
@@ -188,8 +189,6 @@ def _from_counts(counts: Counts, location: float) -> Fit:
     spread = _spread(x, location)
 
     def make(point: Array, _median: float, _spread: float) -> tuple[Any, dict[str, float]]:
-        low = [-12.0, log(_NARROWEST), log(_NARROWEST), -10.0, log(_NARROWEST)]
-        bounded = np.clip(point, low, [12.0, 7.0, 7.0, 10.0, 7.0])
-        return _made(bounded, spread, location)
+        return _made(np.clip(point, *np.transpose(_BOUNDS)), spread, location)
 
     return fit_counts("cusp mixture", counts, make, _search(x, spread, location), fixed=1)

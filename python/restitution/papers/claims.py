@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Generic, Literal, NamedTuple, TypeVar
 
-from restitution._internal.text import with_error
 from restitution.papers.estimate import Estimate
 from restitution.papers.runs import Runs
 from restitution.papers.settings import Settings
@@ -26,14 +25,6 @@ class Measurement:
     error: float | None = None
     unit: str = ""
     at: str = ""  # what distinguishes it from others of the same name, such as the impact velocity
-
-    @property
-    def number(self) -> str:
-        """Value ± error and unit, as text."""
-        return f"{with_error(self.value, self.error)} {self.unit}".rstrip()
-
-    def __str__(self) -> str:
-        return f"{self.name}{', ' if self.at else ''}{self.at} = {self.number}"
 
 
 class Finding(NamedTuple):

@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from restitution.figures.report import grouped, save_with_data
+from restitution.figures.style import Style, styled
 from restitution.papers.claims import R, S
 from restitution.papers.runs import impacts_of
 
@@ -86,9 +87,14 @@ class PaperFigure(Generic[R, S]):
     pictured: str  # what is drawn, for those who cannot see it
     shows: str  # what there is to see
     reduce: Callable[[R, S], xr.Dataset]  # with the attributes of `recorded` or `counted`
-    draw: Callable[[xr.Dataset], Figure]
+    panels: Callable[[xr.Dataset], Figure]  # of the reduced data
     caption: Callable[[xr.Dataset, S], Caption]
     stop: int | None = None  # of the explorer's tour, where such a figure fills up
+
+    @styled
+    def draw(self, drawn: xr.Dataset, *, style: Style | None = None) -> Figure:
+        """Draw the reduced data; `style` as in `restitution.figures`."""
+        return self.panels(drawn)
 
     def save(self, runs: R, settings: S, folder: Path) -> "SavedFigure":
         """Write the figure (``name.png``, ``name.pdf``), its caption (``.txt``) and its data (``.nc``)."""

@@ -22,6 +22,7 @@ class Paper(Generic[R, S]):
     command: str  # that makes the report, without number of impacts and seed
     settings: S
     least: int  # of what `size` counts, to ask for at least
+    usual: int  # of these where nobody says
     number: int  # of runs that `simulate` makes
     simulate: Callable[[S, int, Runner], R]  # from the settings, and the number asked for
     about: Callable[[R], str]  # what was simulated, in a sentence or two

@@ -18,7 +18,7 @@ PAGES = ("report.html", "explorer.html")
 def redraw(
     paper: Paper[R, S],
     out: str | os.PathLike[str],
-    impacts: int,
+    impacts: int | None = None,
     seed: int = 1,
     threads: int | None = None,
     progress: bool = True,
@@ -34,8 +34,9 @@ def redraw(
     out : path
         Folder for the report, the explorer that its figures are linked to, and for each figure its PNG, PDF,
         caption and data; made if it does not exist. Nothing appears there before all is done.
-    impacts : int
-        Impacts to simulate, or what else `Paper.size` says, as the paper's `simulate` counts them.
+    impacts : int, optional
+        Impacts to simulate, or what else `Paper.size` says, as the paper's `simulate` counts them;
+        `Paper.usual` unless given.
     seed : int
         Seed that those of all runs derive from, in [0, 2⁶⁴).
     threads : int, optional
@@ -59,7 +60,7 @@ def redraw(
         anything is computed.
     """
     settings = paper.settings
-    impacts = whole(paper.size, impacts, paper.least, 2**53)
+    impacts = whole(paper.size, paper.usual if impacts is None else impacts, paper.least, 2**53)
     seed = whole("seed", seed, 0, 2**64 - 1)
     checked_threads(threads)
     overwrite, progress = flag("overwrite", overwrite), flag("progress", progress)

@@ -43,15 +43,13 @@ def report(
         Section("claims", "The claims, checked", [_summary(claims)]),
         Section("figures", "The figures, redrawn", [_figure(figure, explorer) for figure in figures]),
         Section("numbers", "The numbers behind each verdict", _details(claims, paper.errors)),
-        Section("misprints", "Misprints", _misprints(paper.misprints)),
+        *([Section("misprints", "Misprints", _misprints(paper.misprints))] if paper.misprints else []),
         *paper.sections(runs, paper.settings),
         Section("parameters", "Parameters", _parameters(paper.settings)),
         Section("runs", "Simulations", _simulations(runs, paper)),
         Section("reproduce", "How to reproduce this report", _reproduce(paper, runs, source)),
         Section("cite", "How to cite", [_citation(paper.reference, runs)]),
     ]
-    if not paper.misprints:
-        sections = [one for one in sections if one.anchor != "misprints"]
     return html.page(paper.title, _heading(paper, claims, runs, source), sections, source, contents=True)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
@@ -50,12 +49,6 @@ def body(body: AnyBody, angle: float = math.radians(50.0), *, style: Style | Non
         raise ParameterError(wrong("body", body, ANY_BODIES))
     angle = real("angle", angle, "an angle in rad, in [-2 pi, 2 pi]", lambda x: abs(x) <= 2.0 * math.pi)
     figure, [[axes]] = panels(0.5 * COLUMN, 0.5 * COLUMN)
-    portrait(axes, body, angle)
-    return figure
-
-
-def portrait(axes: Axes, body: AnyBody, angle: float) -> None:
-    """Draw the body into a panel."""
     axis = np.array([math.sin(angle), math.cos(angle), 0.0])
     reach = body.compiled.farthest()
     if isinstance(body, RigidBody):
@@ -76,6 +69,7 @@ def portrait(axes: Axes, body: AnyBody, angle: float) -> None:
     draw.marks(axes, 1e3 * centre, contact * [1.0, 0.0, 0.0])
     axes.set_xlim(-1.3 * size, 1.3 * size)
     axes.set_ylim(-0.6 * size, 2.2 * size)
+    return figure
 
 
 def _attitude(angle: float) -> FloatArray:

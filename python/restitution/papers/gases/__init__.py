@@ -1,8 +1,7 @@
 """Gases of aspherical grains, of spheres in their place, and with friction; published claims, judged."""
 
-import os
 from collections.abc import Sequence
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 
@@ -140,6 +139,7 @@ PAPER = Paper(
     command="restitution gas-figures --out gas",
     settings=Settings(),
     least=100,
+    usual=10_000,  # in each gas
     number=number(Settings()),
     simulate=simulate,
     about=_about,
@@ -160,19 +160,5 @@ PAPER = Paper(
     ends="Gases end after a number of collisions. An encounter in which contacts accumulate ends as a "
     "collapse, and nothing is regularised.",
 )
-
-
-def redraw(
-    out: str | os.PathLike[str],
-    particles: int = 10_000,
-    seed: int = 1,
-    threads: int | None = None,
-    progress: bool = True,
-    *,
-    overwrite: bool = False,
-) -> Path:
-    """Follow gases of grains and of spheres, draw four figures, and judge what is published of them.
-
-    So many particles are in each gas. All else is as in `restitution.papers.redraw.redraw`.
-    """
-    return machinery.redraw(PAPER, out, particles, seed, threads, progress, overwrite=overwrite)
+redraw = partial(machinery.redraw, PAPER)
+"""As `restitution.papers.redraw.redraw`, of this paper."""

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 import restitution as rs
 from restitution import figures as fg
-from restitution.figures.style import Style, colors
+from restitution.figures.style import colors
 from restitution.papers.figures import Caption, PaperFigure, listing
 from restitution.papers.gases._runs import Runs, across, fall, ratio
 from restitution.papers.gases._settings import Settings
@@ -67,8 +67,7 @@ def _cooling(runs: Runs, s: Settings) -> xr.Dataset:
     return _about(runs, drawn.assign(spheres=s.spheres(s.normals[0])))
 
 
-@fg.styled
-def _draw_cooling(drawn: xr.Dataset, *, style: Style | None = None) -> Figure:
+def _draw_cooling(drawn: xr.Dataset) -> Figure:
     figure, [[left, right]] = fg.panels(fg.PAGE, 2.8, 1, 2)
     for k, elongation in enumerate(drawn["elongation"].to_numpy()):
         points: dict[str, Any] = {"marker": fg.MARKERS[k], "linestyle": "none", "markevery": 2}
@@ -147,8 +146,7 @@ def _ratios(runs: Runs, s: Settings) -> xr.Dataset:
     return _about(runs, drawn)
 
 
-@fg.styled
-def _draw_ratios(drawn: xr.Dataset, *, style: Style | None = None) -> Figure:
+def _draw_ratios(drawn: xr.Dataset) -> Figure:
     figure, [[left, right]] = fg.panels(fg.PAGE, 2.8, 1, 2)
     for axes, of, over, line, text in (
         (left, "by_normal", "coefficient", "elastic", "L/R"),
@@ -215,8 +213,7 @@ def rate(runs: Runs, s: Settings, key: tuple[float, float], rule: str) -> float:
     return fall(runs.grains[key] if rule == "grains" else runs.rules[key][rule]) / s.spheres(key[0])
 
 
-@fg.styled
-def _draw_spheres(drawn: xr.Dataset, *, style: Style | None = None) -> Figure:
+def _draw_spheres(drawn: xr.Dataset) -> Figure:
     figure, [panels] = fg.panels(fg.PAGE, 2.8, 1, 3)
     look: dict[str, dict[str, Any]] = {"grains": {"color": "0.5", "label": "the grains themselves"}}
     for k, (name, label) in enumerate(_LABELS.items()):
@@ -271,8 +268,7 @@ def _friction(runs: Runs, s: Settings) -> xr.Dataset:
     return _about(runs, drawn)
 
 
-@fg.styled
-def _draw_friction(drawn: xr.Dataset, *, style: Style | None = None) -> Figure:
+def _draw_friction(drawn: xr.Dataset) -> Figure:
     figure, [[left, right]] = fg.panels(fg.PAGE, 2.8, 1, 2)
     for k, name in enumerate(drawn["gas"].to_numpy()):
         body, normal = name.split(", ")

@@ -1,7 +1,6 @@
 """The paper PRE 90, 052204 (2014), redrawn and judged claim by claim."""
 
-import os
-from pathlib import Path
+from functools import partial
 
 from restitution.figures.report import grouped
 from restitution.papers import redraw as machinery
@@ -33,6 +32,7 @@ PAPER = Paper(
     command="restitution paper --out paper",
     settings=Settings(),
     least=Settings.least_impacts,
+    usual=100_000_000,  # for each of Figs. 2-5 and 7, and each curve of Fig. 6
     number=number(Settings()),
     simulate=simulate,
     about=_about,
@@ -47,21 +47,5 @@ PAPER = Paper(
     misprints=MISPRINTS,
     sections=sections,
 )
-
-
-def redraw(
-    out: str | os.PathLike[str],
-    impacts: int = 100_000_000,
-    seed: int = 1,
-    threads: int | None = None,
-    progress: bool = True,
-    *,
-    overwrite: bool = False,
-) -> Path:
-    """Redraw Figs. 2-7 and 9, with two figures of what the paper leaves open, and judge the paper's claims.
-
-    Impacts are counted for each of Figs. 2-5 and 7 and each curve of Fig. 6: at least 400 000, the number in
-    the paper's Fig. 2. At most 4 000 000 of them are recorded, for the claims and the standard errors. All
-    else is as in `restitution.papers.redraw.redraw`.
-    """
-    return machinery.redraw(PAPER, out, impacts, seed, threads, progress, overwrite=overwrite)
+redraw = partial(machinery.redraw, PAPER)
+"""As `restitution.papers.redraw.redraw`, of this paper."""

@@ -22,7 +22,6 @@ _SPEED_TICKS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 _BAND = "Band: ± one standard error, each particle counting as one draw; mostly narrower than the line."
 
 
-@fg.styled
 def _slow(drawn: xr.Dataset) -> Figure:
     figure = fg.map(drawn)
     axes = figure.axes[0]
@@ -32,7 +31,6 @@ def _slow(drawn: xr.Dataset) -> Figure:
     return figure
 
 
-@fg.styled
 def _restitution_histograms(drawn: xr.Dataset) -> Figure:
     figure, panels = fg.panels(fg.PAGE, 4.6, 2, 2)
     for k, axes in enumerate([axes for row in panels for axes in row]):
@@ -51,7 +49,6 @@ def _restitution_histograms(drawn: xr.Dataset) -> Figure:
     return figure
 
 
-@fg.styled
 def _fraction_histograms(drawn: xr.Dataset) -> Figure:
     figure, [[axes]] = fg.panels(fg.COLUMN, 2.7)
     for k, speed in enumerate(drawn["speed"].to_numpy()):
@@ -68,7 +65,6 @@ def _fraction_histograms(drawn: xr.Dataset) -> Figure:
     return figure
 
 
-@fg.styled
 def _bead_deviation(drawn: xr.Dataset) -> Figure:
     figure, [[axes]] = fg.panels(fg.COLUMN, 2.5)
     for k, x in enumerate(drawn["elongation"].to_numpy()):
@@ -78,7 +74,6 @@ def _bead_deviation(drawn: xr.Dataset) -> Figure:
     return figure
 
 
-@fg.styled
 def _first_impact(drawn: xr.Dataset) -> Figure:
     figure, [[axes], [below]] = fg.panels(fg.COLUMN, 3.4, 2, 1, sharex=True, height_ratios=[3, 1])
     points: dict[str, Any] = {"marker": "o", "markersize": 2.0, "color": fg.COLORS[0]}
@@ -105,7 +100,6 @@ def _first_impact(drawn: xr.Dataset) -> Figure:
     return figure
 
 
-@fg.styled
 def _map_sensitivity(drawn: xr.Dataset) -> Figure:
     def quantiles(axes: Axes, axis: str, k: int, label: str) -> None:
         for q, style in enumerate((":", "-", ":")):
@@ -116,7 +110,6 @@ def _map_sensitivity(drawn: xr.Dataset) -> Figure:
     return _two_panels(drawn, quantiles, RESTITUTION, "lower right")
 
 
-@fg.styled
 def _deviation_sensitivity(drawn: xr.Dataset) -> Figure:
     def deviation(axes: Axes, axis: str, k: int, label: str) -> None:
         _deviation(axes, drawn.isel({axis: k}), f"_by_{axis}", k, label)

@@ -89,6 +89,12 @@ class Settings(AtSpeeds, settings.Settings):
         """The law of Fig. 9 (Eq. 9)."""
         return TangentialRestitution(normal=self.first_normal, tangential=self.tangential)
 
+    @property
+    def rolling(self) -> float:
+        """E_rot/E_tot of the body of Fig. 2 that rolls end over end, its centre of mass at height R."""
+        body = self.body(self.elongation)
+        return body.transverse_inertia / (body.transverse_inertia + body.mass * self.radius**2)
+
     def body(self, elongation: float, radius: float | None = None) -> Dumbbell:
         """Make the dumbbell with this L/R; `radius` is `Settings.radius` unless given."""
         r = self.radius if radius is None else radius

@@ -1,7 +1,6 @@
 """Rough spheres, as in PRE 84, 041306 (2011) and PRE 89, 022205 (2014): simulated, drawn, and judged."""
 
-import os
-from pathlib import Path
+from functools import partial
 
 from restitution.figures import report as html
 from restitution.figures.report import Section, grouped
@@ -68,6 +67,7 @@ PAPER = Paper(
     command="restitution rough --out rough",
     settings=Settings(),
     least=10_000,
+    usual=10_000_000,  # in the map of restitution and impact velocity
     number=number(Settings()),
     simulate=simulate,
     about=_about,
@@ -80,20 +80,5 @@ PAPER = Paper(
     claims=CLAIMS,
     sections=lambda runs, settings: [_closed_form()],
 )
-
-
-def redraw(
-    out: str | os.PathLike[str],
-    impacts: int = 10_000_000,
-    seed: int = 1,
-    threads: int | None = None,
-    progress: bool = True,
-    *,
-    overwrite: bool = False,
-) -> Path:
-    """Simulate rough spheres, draw four figures, and judge what the papers say of them.
-
-    So many impacts are counted in the map of restitution and impact velocity, and at most 1 000 000 of them
-    recorded. All else is as in `restitution.papers.redraw.redraw`.
-    """
-    return machinery.redraw(PAPER, out, impacts, seed, threads, progress, overwrite=overwrite)
+redraw = partial(machinery.redraw, PAPER)
+"""As `restitution.papers.redraw.redraw`, of this paper."""

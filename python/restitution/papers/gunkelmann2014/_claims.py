@@ -222,11 +222,7 @@ def same_density(runs: Runs, s: Settings) -> Finding:
 def _kurtosis(data: xr.Dataset, window: tuple[float, float]) -> tuple[float, float]:
     impacts = in_windows(data["impact_velocity"], (window,))
     values = impacts.of(data["restitution"])
-
-    def kurtosis(x: Array) -> float:
-        return float(np.mean((x - x.mean()) ** 4) / x.var() ** 2)
-
-    return jackknife(kurtosis, values, impacts.where[0])
+    return jackknife(lambda x: float(np.mean((x - x.mean()) ** 4) / x.var() ** 2), values, impacts.where[0])
 
 
 @CLAIMS.add(

@@ -1,6 +1,7 @@
 """The figures: each is reduced in `_data`, drawn here, and explained here."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from matplotlib.figure import Figure
 
 from restitution import figures as fg
 from restitution.figures.report import grouped
+from restitution.figures.style import DEVIATION, FRACTION
 from restitution.papers.figures import Caption, PaperFigure, listing
 from restitution.papers.gunkelmann2014 import _data as data
 from restitution.papers.gunkelmann2014._runs import Runs
@@ -18,7 +20,6 @@ _VELOCITY = r"impact velocity $v$ (m/s)"
 _TICKS = (0.05, 0.1, 0.2, 0.5, 1.0)
 
 
-@fg.styled
 def _densities(drawn: xr.Dataset) -> Figure:
     figure, panels = fg.panels(fg.PAGE, 4.6, 2, 2)
     for k, axes in enumerate([axes for row in panels for axes in row]):
@@ -64,16 +65,6 @@ def _two_panels(drawn: xr.Dataset, quantity: str) -> Figure:
     return figure
 
 
-@fg.styled
-def _deviations(drawn: xr.Dataset) -> Figure:
-    return _two_panels(drawn, r"standard deviation $\sigma(\varepsilon)$")
-
-
-@fg.styled
-def _rotation(drawn: xr.Dataset) -> Figure:
-    return _two_panels(drawn, r"mean $E_\mathrm{rot}/E_\mathrm{tot}$")
-
-
 def _model(s: Settings) -> list[str]:
     return [f"N = {grouped(s.asperities)} in the main run"]
 
@@ -115,23 +106,20 @@ def _explain_densities(drawn: xr.Dataset, s: Settings) -> Caption:
     )
 
 
-def _explain_curves(what: str) -> Any:
-    def explain(drawn: xr.Dataset, s: Settings) -> Caption:
-        return Caption(
-            f"{what} against impact velocity (a) for spheres with N asperities of equal height, (b) for "
-            f"{grouped(s.asperities)} asperities whose heights are exponential with the mean ⟨h⟩. Points: "
-            "simulation, ± one standard error, each particle counting as one draw. Lines: Eqs. 10 and 12 of "
-            "“The closed form”.",
-            _model(s),
-            [
-                f"N = {', '.join(map(grouped, s.numbers))} with h = {1e6 * s.height:g} µm",
-                f"⟨h⟩ = {listing(s.mean_heights, 1e6)} µm",
-                *_ours(s),
-            ],
-            each="for each curve",
-        )
-
-    return explain
+def _explain_curves(drawn: xr.Dataset, s: Settings, what: str) -> Caption:
+    return Caption(
+        f"{what} against impact velocity (a) for spheres with N asperities of equal height, (b) for "
+        f"{grouped(s.asperities)} asperities whose heights are exponential with the mean ⟨h⟩. Points: "
+        "simulation, ± one standard error, each particle counting as one draw. Lines: Eqs. 10 and 12 of "
+        "“The closed form”.",
+        _model(s),
+        [
+            f"N = {', '.join(map(grouped, s.numbers))} with h = {1e6 * s.height:g} µm",
+            f"⟨h⟩ = {listing(s.mean_heights, 1e6)} µm",
+            *_ours(s),
+        ],
+        each="for each curve",
+    )
 
 
 FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
@@ -162,8 +150,8 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
         "It grows as the velocity falls, with fewer asperities, and with higher ones, along the lines of "
         "the closed form.",
         data.deviations,
-        _deviations,
-        _explain_curves("Standard deviation σ of the coefficient of restitution ε"),
+        partial(_two_panels, quantity=DEVIATION),
+        partial(_explain_curves, what="Standard deviation σ of the coefficient of restitution ε"),
     ),
     PaperFigure(
         "rotation",
@@ -171,7 +159,7 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
         "Mean rotational share of the energy against impact velocity, both axes logarithmic",
         "It grows as the velocity falls.",
         data.rotation,
-        _rotation,
-        _explain_curves("Mean share of the rotational in the kinetic energy before the impact"),
+        partial(_two_panels, quantity=f"mean {FRACTION}"),
+        partial(_explain_curves, what="Mean share of the rotational in the kinetic energy before the impact"),
     ),
 )

@@ -60,12 +60,8 @@ class Settings(AtSpeeds, settings.Settings):
 
     def contact(self, asperities: int | None = None, mean_height: float | None = None) -> RoughContact:
         """Return where a sphere touches: of equal heights if the number is given, else of random ones."""
-        number = self.asperities if asperities is None else asperities
-        heights = (
-            {"mean_height": self.mean_height if mean_height is None else mean_height}
-            if asperities is None
-            else {"height": self.height}
-        )
+        heights = {"height": self.height} if asperities else {"mean_height": mean_height or self.mean_height}
+        number = asperities or self.asperities
         return rough_contact(
             radius=self.radius, asperities=number, asperity_radius=self.asperity_radius, **heights
         )
@@ -95,12 +91,11 @@ class Settings(AtSpeeds, settings.Settings):
 
     def body(self, asperities: int | None = None, mean_height: float | None = None) -> RoughSphere:
         """Make a sphere: with equal heights if the number of asperities is given, else with random ones."""
-        mean = self.mean_height if mean_height is None else mean_height
         return RoughSphere(
             radius=self.radius,
-            asperities=self.asperities if asperities is None else asperities,
+            asperities=asperities or self.asperities,
             asperity_radius=self.asperity_radius,
-            heights=("exponential", mean) if asperities is None else self.height,
+            heights=self.height if asperities else ("exponential", mean_height or self.mean_height),
             seed=self.seed_of_surface,
         )
 

@@ -34,7 +34,7 @@ def share_monotone(runs: Runs, settings: Settings) -> Finding:
     share = bins.impacts.means(bins.impacts.of(runs.main["rotational_fraction"]))
     found = trend(share)
     shown = slice(None, None, 3)
-    rolling = _rolling(settings)
+    rolling = settings.rolling
     return Finding(
         measured=(
             *listed("mean E_rot/E_tot", bins.labels[shown], share.take(shown)),
@@ -49,12 +49,6 @@ def share_monotone(runs: Runs, settings: Settings) -> Finding:
         f"{'with no significant decrease' if found.monotone else 'but does not rise at every step'}. For a "
         f"rolling body it is {rolling:.3f}.",
     )
-
-
-def _rolling(settings: Settings) -> float:
-    """Return E_rot/E_tot of rolling end over end, the centre of mass at height R."""
-    body = settings.body(settings.elongation)
-    return body.transverse_inertia / (body.transverse_inertia + body.mass * body.radii[0] ** 2)
 
 
 @CLAIMS.add(
@@ -109,7 +103,7 @@ def ceases(runs: Runs, settings: Settings) -> Finding:
             ),
             Measurement("mean energy left in them", *_mean(left[ended]), unit="of that at the first"),
             Measurement("mean E_rot/E_tot at their last impact", *_mean(fraction[ended])),
-            Measurement("E_rot/E_tot of rolling, J_xx/(J_xx + mR²)", _rolling(settings)),
+            Measurement("E_rot/E_tot of rolling, J_xx/(J_xx + mR²)", settings.rolling),
         ),
         verdict=verdict(kept == 0, float(left.mean()) < 0.5),
         rule=f"Holds if no trajectory collapses with more than {with_error(REST, None)} of the energy of its "

@@ -64,8 +64,6 @@ def expense_of_rotation(runs: Runs, settings: Settings) -> Finding:
     lost = float(np.mean(turning + moving))
     part = float(np.mean(turning)) / lost
     part_error = float(impacts.means((turning - part * (turning + moving)) / lost).error[0])
-    body = settings.body(settings.elongation)
-    sphere = body.transverse_inertia / (body.transverse_inertia + body.mass * settings.radius**2)
     return Finding(
         measured=(
             Measurement("impacts with ε > 1 in the range of Fig. 2", float(falls.number[0])),
@@ -73,7 +71,7 @@ def expense_of_rotation(runs: Runs, settings: Settings) -> Finding:
             Measurement(
                 "share of rotation in what rotation and sideways motion lose in them", part, part_error
             ),
-            Measurement("J_xx/(J_xx + mR²)", sphere),
+            Measurement("J_xx/(J_xx + mR²)", settings.rolling),
         ),
         verdict=verdict(value == 1 and part > 0.5, value > 0.5),
         rule="Holds if the rotational energy falls in every impact with ε > 1 in the range of Fig. 2, and "
