@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import quad
 
 from restitution.analytic._curve import Branch, Curve
-from restitution.analytic._frozen import FirstImpact, Values, cosine_of, floats, probability, scalar
+from restitution.analytic._frozen import FirstImpact, Values, cosine_of, floats, scalar
 from restitution.analytic._normal import Fall
 from restitution.analytic._orientation import Floats
 from restitution.analytic._panels import nodes, roots, solve
@@ -67,29 +67,8 @@ class BranchedFirstImpact(FirstImpact):
             greatest[there] = np.fmax(greatest[there], cosine)
         return scalar(greatest)
 
-    def pdf(self, x: ArrayLike) -> Values:
-        return scalar(self._density(floats(x)))
-
-    def cdf(self, x: ArrayLike) -> Values:
-        return scalar(self._probability(floats(x), above=False))
-
-    def sf(self, x: ArrayLike) -> Values:
-        return scalar(self._probability(floats(x), above=True))
-
-    def ppf(self, q: ArrayLike) -> Values:
-        return self._quantile(probability(q), above=False)
-
-    def isf(self, q: ArrayLike) -> Values:
-        return self._quantile(probability(q), above=True)
-
     def _drawn(self, uniform: Floats) -> Values:
         return scalar(self._curve.restitution(self._tilt.quantile(uniform)))
-
-    def mean(self) -> float:
-        return self._raw(1)
-
-    def std(self) -> float:
-        return float(np.sqrt(self._central(2)))
 
     def _expected(
         self, func: Callable[[float], float], low: float, high: float, options: dict[str, Any]
@@ -176,13 +155,13 @@ class BranchedFirstImpact(FirstImpact):
         total = np.where(x >= high, 0.0 if above else 1.0, np.clip(total, 0.0, 1.0))
         return np.where(x <= low, 1.0 if above else 0.0, total)
 
-    def _quantile(self, q: Floats, *, above: bool) -> Values:
+    def _quantile(self, q: Floats, *, above: bool) -> Floats:
         low, high = self.support()
         found = solve(
             lambda x: self._probability(x, above=above) - q, np.full(q.shape, low), np.full(q.shape, high)
         )
         found = np.where(q == 0.0, high if above else low, np.where(q == 1.0, low if above else high, found))
-        return scalar(np.where(np.isnan(q), np.nan, found))
+        return np.where(np.isnan(q), np.nan, found)
 
     def _is_top(self, branch: Branch) -> bool:
         """Test whether no other branch goes on from the upper end."""
@@ -190,25 +169,14 @@ class BranchedFirstImpact(FirstImpact):
         starts = [min(other.first, other.last) for other in self._curve.branches]
         return not np.any(np.abs(np.array(starts) - most) <= 4.0 * np.finfo(float).eps)
 
-    def _sum(self, function: Callable[[Floats], Floats], order: int) -> float:
-        """Return the mean of a function of ε that is a polynomial of this order."""
+    def _mean_of(self, polynomial: Callable[[Floats], Floats], order: int) -> float:
         total = 0.0
         for piece, edges in zip(self._curve.pieces, self._curve.edges, strict=True):
             inner = self._tilt.edges
             inner = inner[(inner > edges[0]) & (inner < edges[-1])]
             theta, weights = nodes(np.union1d(edges, inner), order)
-            total += float((weights * self._tilt.density(theta)) @ function(piece.restitution(theta)))
+            total += float((weights * self._tilt.density(theta)) @ polynomial(piece.restitution(theta)))
         return total
-
-    def _raw(self, order: int) -> float:
-        return self._sum(lambda value: value**order, order)
-
-    def _central(self, order: int) -> float:
-        mean = self.mean()
-        return self._sum(lambda value: (value - mean) ** order, order)
-
-    def _standardised(self, order: int) -> float:
-        return float(self._central(order) / self._central(2) ** (order / 2))
 
 
 def _inside(branch: Branch, x: Floats, *, top: bool = True) -> NDArray[np.bool_]:

@@ -129,33 +129,42 @@ class FirstImpact(ABC):
         """P(ε < 0): the centre of mass goes on downwards."""
         return float(self.cdf(0.0))
 
-    @abstractmethod
     def pdf(self, x: ArrayLike) -> Values:
         """Return the probability density at ε = x."""
+        return scalar(self._density(floats(x)))
 
-    @abstractmethod
     def cdf(self, x: ArrayLike) -> Values:
         """Return the probability that ε <= x; ``cdf(0)`` is that of a body that goes on downwards."""
+        return scalar(self._probability(floats(x), above=False))
 
-    @abstractmethod
     def sf(self, x: ArrayLike) -> Values:
         """Return the probability that ε > x, accurate also where it is small."""
+        return scalar(self._probability(floats(x), above=True))
 
-    @abstractmethod
     def ppf(self, q: ArrayLike) -> Values:
         """Return the quantile: the ε with ``cdf(ε) = q``; nan unless ``0 <= q <= 1``."""
+        return scalar(self._quantile(probability(q), above=False))
 
-    @abstractmethod
     def isf(self, q: ArrayLike) -> Values:
         """Return the upper quantile: the ε with ``sf(ε) = q``; nan unless ``0 <= q <= 1``."""
+        return scalar(self._quantile(probability(q), above=True))
 
     @abstractmethod
+    def _density(self, x: Floats) -> Floats: ...
+
+    @abstractmethod
+    def _probability(self, x: Floats, *, above: bool) -> Floats: ...
+
+    @abstractmethod
+    def _quantile(self, q: Floats, *, above: bool) -> Floats: ...
+
     def mean(self) -> float:
         """Return the mean of ε."""
+        return self._raw(1)
 
-    @abstractmethod
     def std(self) -> float:
         """Return the square root of the variance of ε."""
+        return float(np.sqrt(self._central(2)))
 
     def expect(
         self,
@@ -216,12 +225,21 @@ class FirstImpact(ABC):
         """Return the differential entropy, -∫ p ln p dε."""
 
     @abstractmethod
+    def _mean_of(self, polynomial: Callable[[Floats], Floats], order: int) -> float:
+        """Return the mean of a function of ε that is a polynomial of this order."""
+
     def _raw(self, order: int) -> float:
         """Return the mean of ε to a power."""
+        return self._mean_of(lambda value: value**order, order)
 
-    @abstractmethod
+    def _central(self, order: int) -> float:
+        """Return the mean of ε - mean to a power."""
+        mean = self.mean()
+        return self._mean_of(lambda value: (value - mean) ** order, order)
+
     def _standardised(self, order: int) -> float:
         """Return the mean of (ε - mean)/std to a power."""
+        return float(self._central(order) / self._central(2) ** (order / 2))
 
     def logpdf(self, x: ArrayLike) -> Values:
         """Return the logarithm of `pdf`; -inf outside the support."""

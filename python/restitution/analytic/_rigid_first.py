@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.analytic._cells import Balls, Ints, Smooth, Units, clipped, solid_angle, unit
-from restitution.analytic._frozen import FirstImpact, Values, floats, probability, scalar
+from restitution.analytic._frozen import FirstImpact, Values
 from restitution.analytic._full_impulse import Response, dot
 from restitution.analytic._impulse import Impulse
 from restitution.analytic._normal import Fall
@@ -73,26 +73,14 @@ class RigidFirstImpact(FirstImpact):
     def support(self) -> tuple[float, float]:
         return self._support
 
-    def pdf(self, x: ArrayLike) -> Values:
-        return scalar(self._table.slope(floats(x)))
+    def _density(self, x: Floats) -> Floats:
+        return self._table.slope(x)
 
-    def cdf(self, x: ArrayLike) -> Values:
-        return scalar(self._table.probability(floats(x)))
+    def _probability(self, x: Floats, *, above: bool) -> Floats:
+        return self._table.probability(x, above=above)
 
-    def sf(self, x: ArrayLike) -> Values:
-        return scalar(self._table.probability(floats(x), above=True))
-
-    def ppf(self, q: ArrayLike) -> Values:
-        return scalar(self._table.quantile(probability(q)))
-
-    def isf(self, q: ArrayLike) -> Values:
-        return scalar(self._table.quantile(1.0 - probability(q)))
-
-    def mean(self) -> float:
-        return self._raw(1)
-
-    def std(self) -> float:
-        return float(np.sqrt(self._central(2)))
+    def _quantile(self, q: Floats, *, above: bool) -> Floats:
+        return self._table.quantile(1.0 - q if above else q)
 
     def entropy(self) -> float:
         """Return the differential entropy, -∫ p ln p dε, to some 1e-3; -inf if one ε has a probability."""
@@ -127,15 +115,8 @@ class RigidFirstImpact(FirstImpact):
             total, part = total + size * func(place), part + size
         return total, part
 
-    def _raw(self, order: int) -> float:
-        return self._cover[1].mean(lambda value: value**order)
-
-    def _central(self, order: int) -> float:
-        mean = self.mean()
-        return self._cover[1].mean(lambda value: (value - mean) ** order)
-
-    def _standardised(self, order: int) -> float:
-        return float(self._central(order) / self._central(2) ** (order / 2))
+    def _mean_of(self, polynomial: Callable[[Floats], Floats], order: int) -> float:
+        return self._cover[1].mean(polynomial)
 
     @cached_property
     def _size(self) -> float:

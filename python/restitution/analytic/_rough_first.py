@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.analytic._branched import BranchedFirstImpact
-from restitution.analytic._frozen import Values, cosine_of, floats, scalar
+from restitution.analytic._curve import Branch
+from restitution.analytic._frozen import Values, cosine_of, scalar
 from restitution.analytic._normal import coefficient
 from restitution.analytic._orientation import Floats
 from restitution.analytic._tilt import Tilt
@@ -104,12 +105,12 @@ class RoughFirstImpact(BranchedFirstImpact):
         """Raise a ValueError: the distribution is that over spheres whose asperities are not given."""
         raise ParameterError(wrong("body", self.body, "one whose contact follows from its attitude"))
 
-    def pdf(self, x: ArrayLike) -> Values:
-        return scalar((1.0 - self._sphere) * self._density(floats(x)))
-
     def entropy(self) -> float:
         """Return the differential entropy: -inf, because one value of ε has a probability of its own."""
         return super().entropy() if self._sphere == 0.0 else -np.inf
+
+    def _density(self, x: Floats, without: Branch | None = None) -> Floats:
+        return (1.0 - self._sphere) * super()._density(x, without)
 
     def _probability(self, x: Floats, *, above: bool) -> Floats:
         step = x < self._bounce if above else x >= self._bounce
@@ -128,6 +129,6 @@ class RoughFirstImpact(BranchedFirstImpact):
         rest = 1.0 - self._sphere
         return rest * total + (itself * func(self._bounce) if itself else 0.0), rest * part + itself
 
-    def _sum(self, function: Callable[[Floats], Floats], order: int) -> float:
-        itself = float(function(np.array([self._bounce]))[0])
-        return (1.0 - self._sphere) * super()._sum(function, order) + self._sphere * itself
+    def _mean_of(self, polynomial: Callable[[Floats], Floats], order: int) -> float:
+        itself = float(polynomial(np.array([self._bounce]))[0])
+        return (1.0 - self._sphere) * super()._mean_of(polynomial, order) + self._sphere * itself

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import quad
 
-from restitution.analytic._frozen import FirstImpact, Values, cosine_of, floats, probability, scalar
+from restitution.analytic._frozen import FirstImpact, Values, cosine_of, floats, scalar
 from restitution.analytic._impact_from_rest import ImpactFromRest, impact_from_rest
 from restitution.analytic._orientation import ORIENTATIONS, Floats, Orientation, OrientationName
 from restitution.analytic._panels import gauss
@@ -63,34 +63,28 @@ class TwoBallsFirstImpact(FirstImpact):
         cosine, _ = self._angle(value)
         return scalar(np.where(self._outside(value), np.nan, cosine))
 
-    def pdf(self, x: ArrayLike) -> Values:
-        """Return the probability density at ε = x (Eq. 21 without its misprints)."""
-        with np.errstate(over="ignore"):
-            return scalar(self._relative_density(x) / self._impact.greatest_loss)
-
     def logpdf(self, x: ArrayLike) -> Values:
         with np.errstate(divide="ignore"):
-            return scalar(np.log(self._relative_density(x)) - np.log(self._impact.greatest_loss))
+            return scalar(np.log(self._relative_density(floats(x))) - np.log(self._impact.greatest_loss))
 
-    def cdf(self, x: ArrayLike) -> Values:
-        return scalar(self._orientation.below(*self._angle(floats(x))))
+    def _density(self, x: Floats) -> Floats:
+        """Eq. 21 without its misprints."""
+        with np.errstate(over="ignore"):
+            return self._relative_density(x) / self._impact.greatest_loss
 
-    def sf(self, x: ArrayLike) -> Values:
-        return scalar(self._orientation.above(*self._angle(floats(x))))
+    def _probability(self, x: Floats, *, above: bool) -> Floats:
+        law = self._orientation
+        return (law.above if above else law.below)(*self._angle(x))
 
-    def ppf(self, q: ArrayLike) -> Values:
-        below = probability(q)
-        return scalar(self._impact.restitution(*self._orientation.quantile(below, 1.0 - below)))
-
-    def isf(self, q: ArrayLike) -> Values:
-        above = probability(q)
-        return scalar(self._impact.restitution(*self._orientation.quantile(1.0 - above, above)))
+    def _quantile(self, q: Floats, *, above: bool) -> Floats:
+        shares = (1.0 - q, q) if above else (q, 1.0 - q)
+        return self._impact.restitution(*self._orientation.quantile(*shares))
 
     def mean(self) -> float:
         return self._impact.normal - self._impact.greatest_loss * self._mean_loss
 
     def std(self) -> float:
-        return self._impact.greatest_loss * float(np.sqrt(self._central(2)))
+        return self._impact.greatest_loss * float(np.sqrt(self._central_loss(2)))
 
     def entropy(self) -> float:
         def integrand(u: float) -> float:  # q = u³ tames the logarithm, steep at q = b where b is small
@@ -107,12 +101,12 @@ class TwoBallsFirstImpact(FirstImpact):
         total, _ = quad(lambda q: func(float(self.ppf(q))), below, up_to, **options)
         return float(total), up_to - below
 
-    def _raw(self, order: int) -> float:
+    def _mean_of(self, polynomial: Callable[[Floats], Floats], order: int) -> float:
         q, weights = gauss(self._impact.nodes(order))
-        return float(weights @ self.ppf(q) ** order)
+        return float(weights @ polynomial(self.ppf(q)))
 
     def _standardised(self, order: int) -> float:
-        return float((-1) ** order * self._central(order) / self._central(2) ** (order / 2))
+        return float((-1) ** order * self._central_loss(order) / self._central_loss(2) ** (order / 2))
 
     def _outside(self, restitution: Floats) -> NDArray[np.bool_]:
         low, high = self.support()
@@ -125,13 +119,12 @@ class TwoBallsFirstImpact(FirstImpact):
         lowest = (restitution <= low) & (restitution < high)  # the rounded ε_n - w may differ from ε at c = 0
         return np.where(lowest, 0.0, cosine), np.where(lowest, 1.0, sine)
 
-    def _relative_density(self, x: ArrayLike) -> Floats:
+    def _relative_density(self, x: Floats) -> Floats:
         """Eq. 20, times w."""
-        value = floats(x)
-        cosine, sine = self._angle(value)
+        cosine, sine = self._angle(x)
         with np.errstate(divide="ignore"):
             density = self._orientation.density(cosine, sine) / self._impact.relative_slope(cosine)
-        return np.where(self._outside(value), 0.0, density)
+        return np.where(self._outside(x), 0.0, density)
 
     @cached_property
     def _mean_loss(self) -> float:
@@ -139,7 +132,7 @@ class TwoBallsFirstImpact(FirstImpact):
         q, weights = gauss(self._impact.nodes(1))
         return float(weights @ self._impact.relative_loss(*self._orientation.quantile(q, 1.0 - q)))
 
-    def _central(self, order: int) -> float:
+    def _central_loss(self, order: int) -> float:
         """Return the central moment of (ε_n - ε)/w."""
         q, weights = gauss(self._impact.nodes(order))
         loss = self._impact.relative_loss(*self._orientation.quantile(q, 1.0 - q))
