@@ -11,7 +11,7 @@ from restitution.bodies._dumbbell import Dumbbell
 from restitution.bodies._ellipsoid import Ellipsoid, Superellipsoid
 from restitution.bodies._ellipsoid import farthest as farthest
 from restitution.bodies._ellipsoid import outermost as outermost
-from restitution.bodies._hollow import Wall as Wall
+from restitution.bodies._given import Wall as Wall
 from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._mesh import Mesh
 from restitution.bodies._polyhedra import Box, ConvexPolyhedron

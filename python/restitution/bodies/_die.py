@@ -1,6 +1,6 @@
 """Dice: the five Platonic solids."""
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Unpack
 
 import numpy as np
 from pydantic import BeforeValidator
@@ -8,7 +8,7 @@ from pydantic import BeforeValidator
 from restitution import _core
 from restitution._internal.arrays import FloatArray
 from restitution._internal.parameters import Allowed, ParameterError, wrong
-from restitution.bodies._rigid import Density, Length, Matter
+from restitution.bodies._rigid import Density, Length, Matter, OfMatter
 
 _FACES = "4, 6, 8, 12 or 20"
 
@@ -45,9 +45,7 @@ class Die(Matter):
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
 
-        def __init__(
-            self, faces: int, edge: float, *, density: float = 2500.0, inertia: Any = None, centre: Any = None
-        ) -> None: ...
+        def __init__(self, faces: int, edge: float, **matter: Unpack[OfMatter]) -> None: ...
 
     @property
     def vertices(self) -> FloatArray:

@@ -7,8 +7,7 @@ from pydantic import Field
 from restitution._internal.arrays import positive
 from restitution._internal.parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
-from restitution.bodies._hollow import Moments, Wall
-from restitution.bodies._two_balls import PositivePair, both
+from restitution.bodies._given import Moments, PositivePair, Wall
 
 
 class Dumbbell(Body):
@@ -71,12 +70,12 @@ class Dumbbell(Body):
     @property
     def radii(self) -> tuple[float, float]:
         """Radii of sphere 1 and sphere 2, in m."""
-        return both(self.radius)
+        return _both(self.radius)
 
     @property
     def densities(self) -> tuple[float, float]:
         """Densities of sphere 1 and sphere 2, in kg/m³."""
-        return both(self.density)
+        return _both(self.density)
 
     @property
     def is_equal(self) -> bool:
@@ -92,3 +91,8 @@ class Dumbbell(Body):
     def centre_of_mass(self) -> float:
         """Place of the centre of mass on the axis, from the middle of both centres towards sphere 1, in m."""
         return self.compiled.centre_of_mass
+
+
+def _both(value: float | tuple[float, float]) -> tuple[float, float]:
+    """Return one value for each sphere."""
+    return value if isinstance(value, tuple) else (value, value)

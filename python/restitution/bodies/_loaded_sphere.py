@@ -6,7 +6,7 @@ from pydantic import Field
 
 from restitution._internal.parameters import Number
 from restitution.bodies._body import Body
-from restitution.bodies._hollow import Moments, Wall
+from restitution.bodies._given import Moments, Wall
 
 
 class LoadedSphere(Body):

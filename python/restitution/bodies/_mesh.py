@@ -1,9 +1,8 @@
 """Solids within closed surfaces of triangles, as scanners and design programs write them."""
 
-import os
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import BeforeValidator, Field
@@ -11,8 +10,8 @@ from pydantic import BeforeValidator, Field
 from restitution import _core
 from restitution._internal import files
 from restitution._internal.arrays import FloatArray, IntArray, reals
-from restitution._internal.parameters import Allowed, ParameterError, Problem, renamed, wrong
-from restitution.bodies._rigid import LARGEST, SMALLEST, Density, Matter, ask_of_scale, rows, scale_of
+from restitution._internal.parameters import Allowed, ParameterError, Problem, wrong
+from restitution.bodies._rigid import LARGEST, SMALLEST, Density, FromFile, rows
 
 _VERTICES = "four or more points (x, y, z) in m, finite, not all in one plane"
 _TRIANGLES = "triples of numbers of the vertices, from 0"
@@ -26,7 +25,7 @@ def _triangles(value: Any) -> tuple[tuple[int, ...], ...]:
     return tuple(map(tuple, found.astype(np.int64).tolist()))
 
 
-class Mesh(Matter):
+class Mesh(FromFile):
     """A homogeneous solid within closed surfaces of triangles, convex or not.
 
     Only its convex hull touches the plane, so that the motion of any solid is exact; mass, centre of mass and
@@ -55,51 +54,12 @@ class Mesh(Matter):
     density: Density = 2500.0
 
     @classmethod
-    def from_file(
-        cls,
-        path: str | os.PathLike[str],
-        *,
-        scale: float = 1.0,
-        density: float = 2500.0,
-        inertia: Any = None,
-        centre: Any = None,
-    ) -> Self:
-        """Read an STL, OBJ or PLY file.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file. Vertices at the same place are one; what else is in it, such as colours, is not read.
-        scale : float, default 1
-            What a unit of the file is in m: 1e-3 for millimetres. > 0.
-        density, inertia, centre
-            As those of the body.
-
-        Raises
-        ------
-        ValueError
-            If the file is none of these, or its surface is not closed or not oriented; the message says
-            where. Or if trimesh, which reads these files, is not installed: ``pip install
-            'restitution[mesh]'``.
-        OSError
-            If the file cannot be read.
-        """
-        unit = scale_of(scale)
-        place = files.path_from("path", path)
+    def _shape(cls, place: Path, scale: float) -> dict[str, Any]:
         vertices, triangles = _read(place)
-        size = float(np.abs(vertices).max())
-        if not SMALLEST <= unit * size <= LARGEST:
+        if not SMALLEST <= scale * float(np.abs(vertices).max()) <= LARGEST:
             allowed = f"such that the mesh is {SMALLEST:g} to {LARGEST:g} m in size"
             raise ParameterError(wrong("scale", scale, allowed))
-        ask_of_scale(place, unit, vertices)
-        with renamed(lambda name: f"{place}: {name}" if name in ("vertices", "triangles") else name):
-            return cls(
-                vertices=unit * vertices,
-                triangles=triangles,
-                density=density,
-                inertia=inertia,
-                centre=centre,
-            )
+        return {"vertices": scale * vertices, "triangles": triangles}
 
     @cached_property
     def hull(self) -> IntArray:

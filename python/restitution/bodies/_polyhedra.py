@@ -1,12 +1,12 @@
 """Convex polyhedra."""
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Unpack
 
 from pydantic import Field
 
 from restitution import _core
 from restitution._internal.parameters import Allowed
-from restitution.bodies._rigid import Density, FromRows, Length, Matter, rows
+from restitution.bodies._rigid import Density, FromRows, Length, Matter, OfMatter, rows
 
 _POINTS = "four or more points (x, y, z) in m, finite, not all in one plane"
 
@@ -35,9 +35,7 @@ class ConvexPolyhedron(FromRows):
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
 
-        def __init__(
-            self, points: Any, *, density: float = 2500.0, inertia: Any = None, centre: Any = None
-        ) -> None: ...
+        def __init__(self, points: Any, **matter: Unpack[OfMatter]) -> None: ...
 
 
 class Box(Matter):
@@ -65,16 +63,7 @@ class Box(Matter):
 
     if TYPE_CHECKING:
 
-        def __init__(
-            self,
-            a: float,
-            b: float,
-            c: float,
-            *,
-            density: float = 2500.0,
-            inertia: Any = None,
-            centre: Any = None,
-        ) -> None: ...
+        def __init__(self, a: float, b: float, c: float, **matter: Unpack[OfMatter]) -> None: ...
 
     @property
     def vertices(self) -> tuple[list[float], ...]:

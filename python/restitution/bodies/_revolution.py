@@ -1,13 +1,13 @@
 """Solids of revolution: any profile, and cylinders, rings and eggs."""
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Unpack
 
 import numpy as np
 from pydantic import Field
 
 from restitution._internal.arrays import FloatArray
 from restitution._internal.parameters import Allowed, Number
-from restitution.bodies._rigid import Density, FromRows, Length, Matter, rows
+from restitution.bodies._rigid import Density, FromRows, Length, Matter, OfMatter, rows
 
 _PROFILE = "two or more points (z, r) in m, finite, r >= 0, around an area"
 
@@ -49,9 +49,7 @@ class Revolution(FromRows, Turned):
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
 
-        def __init__(
-            self, profile: Any, *, density: float = 2500.0, inertia: Any = None, centre: Any = None
-        ) -> None: ...
+        def __init__(self, profile: Any, **matter: Unpack[OfMatter]) -> None: ...
 
     @property
     def rims(self) -> FloatArray:
@@ -83,15 +81,7 @@ class Cylinder(Turned):
 
     if TYPE_CHECKING:
 
-        def __init__(
-            self,
-            radius: float,
-            height: float,
-            *,
-            density: float = 2500.0,
-            inertia: Any = None,
-            centre: Any = None,
-        ) -> None: ...
+        def __init__(self, radius: float, height: float, **matter: Unpack[OfMatter]) -> None: ...
 
 
 class Ring(Turned):
@@ -119,16 +109,7 @@ class Ring(Turned):
 
     if TYPE_CHECKING:
 
-        def __init__(
-            self,
-            outer: float,
-            inner: float,
-            height: float,
-            *,
-            density: float = 2500.0,
-            inertia: Any = None,
-            centre: Any = None,
-        ) -> None: ...
+        def __init__(self, outer: float, inner: float, height: float, **matter: Unpack[OfMatter]) -> None: ...
 
 
 class TruncatedCone(Turned):
@@ -162,16 +143,7 @@ class TruncatedCone(Turned):
 
     if TYPE_CHECKING:
 
-        def __init__(
-            self,
-            base: float,
-            top: float,
-            height: float,
-            *,
-            density: float = 2500.0,
-            inertia: Any = None,
-            centre: Any = None,
-        ) -> None: ...
+        def __init__(self, base: float, top: float, height: float, **matter: Unpack[OfMatter]) -> None: ...
 
 
 class Egg(Turned):

@@ -2,10 +2,11 @@
 
 import os
 import warnings
+from abc import abstractmethod
 from collections.abc import Callable, Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -196,11 +197,21 @@ class Matter(RigidBody):
     centre: Centre = None
 
 
-class FromRows(Matter):
-    """A body whose first parameter is a table of places in m, which a file may hold."""
+class OfMatter(TypedDict, total=False):
+    """Keyword arguments of every such body, for type checkers where others may be given by place."""
 
-    columns: ClassVar[tuple[str, ...]]
-    density: Density = 2500.0
+    density: float
+    inertia: Any
+    centre: Any
+
+
+class FromFile(Matter):
+    """A body whose shape a file may hold."""
+
+    @classmethod
+    @abstractmethod
+    def _shape(cls, place: Path, scale: float) -> dict[str, Any]:
+        """Read the parameters of the shape, the places in it first, from a file in units of `scale` m."""
 
     @classmethod
     def from_file(
@@ -212,12 +223,14 @@ class FromRows(Matter):
         inertia: Any = None,
         centre: Any = None,
     ) -> Self:
-        """Read the table from a file.
+        """Read the shape from a file.
 
         Parameters
         ----------
         path : str or path-like
-            A text file with a row a line, numbers with spaces or commas between them; ``#`` begins a comment.
+            Of points or a profile a text file with a row a line, numbers with spaces or commas between them;
+            ``#`` begins a comment. Of a mesh an STL, OBJ or PLY file: vertices at the same place are one;
+            what else is in it, such as colours, is not read.
         scale : float, default 1
             What a unit of the file is in m: 1e-3 for millimetres. > 0.
         density, inertia, centre
@@ -226,16 +239,29 @@ class FromRows(Matter):
         Raises
         ------
         ValueError
-            If a row is malformed; the message names its line.
+            If the file is none of these, a row malformed, or a surface not closed or not oriented; the
+            message says where. Or if trimesh, which reads meshes, is not installed: ``pip install
+            'restitution[mesh]'``.
         OSError
             If the file cannot be read.
         """
         unit, place = scale_of(scale), files.path_from("path", path)
-        table = unit * np.array(rows_in(place, cls.columns))
-        ask_of_scale(place, unit, table)
-        own = cls.by_place[0]
-        with renamed(lambda name: f"{place}: {name}" if name.startswith(own) else name):
-            return cls(**{own: table}, density=density, inertia=inertia, centre=centre)
+        shape = cls._shape(place, unit)
+        ask_of_scale(place, unit, next(iter(shape.values())))
+        given = shape | {"density": density, "inertia": inertia, "centre": centre}
+        with renamed(lambda name: f"{place}: {name}" if name.partition("[")[0] in shape else name):
+            return cls(**given)
+
+
+class FromRows(FromFile):
+    """A body whose first parameter is a table of places in m."""
+
+    columns: ClassVar[tuple[str, ...]]
+    density: Density = 2500.0
+
+    @classmethod
+    def _shape(cls, place: Path, scale: float) -> dict[str, Any]:
+        return {cls.by_place[0]: scale * np.array(rows_in(place, cls.columns))}
 
 
 def plain(value: Any) -> Any:

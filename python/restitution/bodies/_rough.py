@@ -91,10 +91,6 @@ def _spheres(body: AnyBody) -> tuple[tuple[float, ...], ...]:
     return ((0.0, 0.0, half, one), (0.0, 0.0, -half, other))
 
 
-def _asperities(compiled: _core.Rigid, number: int) -> FloatArray:
-    return compiled.balls()[-number:]
-
-
 class RoughSphere(RigidBody):
     """A homogeneous sphere with asperities: small balls, placed uniformly at random on its surface.
 
@@ -138,7 +134,7 @@ class RoughSphere(RigidBody):
     @property
     def asperity_balls(self) -> FloatArray:
         """Centre and radius (x, y, z, ρ) of each asperity, in m, shape (asperities, 4)."""
-        return _asperities(self.compiled, self.asperities)
+        return self.compiled.balls()[-self.asperities :]
 
     def attributes(self) -> dict[str, Any]:
         """Return every parameter under its own name; that of the asperities' seed says whose it is."""
@@ -206,7 +202,7 @@ class Rough(RigidBody):
     @property
     def asperity_balls(self) -> FloatArray:
         """Centre and radius (x, y, z, ρ) of each asperity, in m, shape (asperities, 4)."""
-        return _asperities(self.compiled, self.asperities)
+        return self.compiled.balls()[-self.asperities :]
 
     def attributes(self) -> dict[str, Any]:
         """Return every parameter under its own name, and those of the body that is rough under theirs."""

@@ -18,7 +18,7 @@ from restitution._internal.parameters import (
 )
 from restitution.bodies._body import Body
 from restitution.bodies._dumbbell import Dumbbell
-from restitution.bodies._hollow import Wall
+from restitution.bodies._given import Wall
 from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._spheroid import Spheroid
 

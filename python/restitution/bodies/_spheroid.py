@@ -7,7 +7,7 @@ from pydantic import Field
 from restitution._internal.arrays import positive
 from restitution._internal.parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
-from restitution.bodies._hollow import Moments, Wall
+from restitution.bodies._given import Moments, Wall
 
 
 class Spheroid(Body):
