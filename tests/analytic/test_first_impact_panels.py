@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import restitution as rs
 from restitution.analytic import first_impact
 from restitution.analytic._disc import Disc, turned
-from restitution.analytic._panels import extremes, nodes, panels, roots, solve
+from restitution.analytic._panels import nodes, panels, roots, solve
 
 # Numbers without a full set of digits round by an absolute error, which no disc allows for.
 unit = st.floats(0, 1, allow_subnormal=False)
@@ -90,7 +90,7 @@ def test_roots_and_extremes_are_all_found() -> None:
     found = roots(function, -10.0, 10.0)
     expected = sorted([*(n * np.pi for n in range(-3, 4)), 1.0, 1.001])
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10)
-    turning = extremes(function, -10.0, 10.0)
+    turning = roots(function, -10.0, 10.0, derivative=True)
     assert all(any(low < t < high for t in turning) for low, high in itertools.pairwise(found))
     values = function(np.array([-10.0, *turning, 10.0]))
     assert np.all(np.diff(values)[:-1] * np.diff(values)[1:] < 0)  # maxima and minima take turns

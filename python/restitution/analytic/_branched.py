@@ -44,17 +44,11 @@ class BranchedFirstImpact(FirstImpact):
     def _tilt(self) -> Tilt:
         return Tilt(self.orientation, self._curve.limit)
 
-    @cached_property
-    def _support(self) -> tuple[float, float]:
-        ends = [value for branch in self._curve.branches for value in (branch.first, branch.last)]
-        return min(ends), max(ends)
-
     def support(self) -> tuple[float, float]:
-        return self._support
+        return self._curve.ends[0], self._curve.ends[-1]
 
     def restitution(self, cos_theta: ArrayLike) -> Values:
         cosine = cosine_of(cos_theta)
-        cosine = np.where(np.abs(cosine) <= 1.0, cosine, np.nan)
         theta = np.arccos(np.abs(cosine) if self._curve.limit < np.pi else cosine)
         return scalar(self._curve.restitution(theta))
 
@@ -90,16 +84,14 @@ class BranchedFirstImpact(FirstImpact):
 
     def entropy(self) -> float:
         """Return the differential entropy, -∫ p ln p dε, to 1e-7."""
-        branches = self._curve.branches
-        ends = [value for branch in branches for value in (branch.first, branch.last)]
-        levels = np.unique([*ends, *self._curve.restitution(self._tilt.edges)])
+        levels = np.unique([*self._curve.ends, *self._curve.restitution(self._tilt.edges)])
         nodes, weights = np.polynomial.legendre.leggauss(128)
         u = 0.5 * (1.0 + nodes)
         # Flat at both ends, where ln p may diverge.
         step = u**4 * (35.0 - 84.0 * u + 70.0 * u**2 - 20.0 * u**3)
         rate = 0.5 * weights * 140.0 * (u * (1.0 - u)) ** 3
         total = 0.0
-        for branch in branches:
+        for branch in self._curve.branches:
             # Where other branches begin or end at the same ε the density jumps.
             for start, stop in pairwise(np.unique(self._curve.angle(branch, levels))):
                 theta = start + (stop - start) * step

@@ -17,7 +17,7 @@ from restitution.analytic._hull import Hull, Outline
 from restitution.analytic._impulse import Impulse, Mode
 from restitution.analytic._normal import Fall, coefficient, kinks
 from restitution.analytic._orientation import Floats
-from restitution.analytic._panels import distinct, extremes, panels, roots, solve
+from restitution.analytic._panels import distinct, panels, roots, solve
 from restitution.bodies import Body, RoughSphere, Turned
 from restitution.laws import Law
 
@@ -114,11 +114,16 @@ class Curve:
         """List the intervals in which ε rises or falls, ascending in θ."""
         found = []
         for piece in self.pieces:
-            turns = extremes(piece.restitution, piece.low, piece.high)
+            turns = roots(piece.restitution, piece.low, piece.high, derivative=True)
             for low, high in _between(piece.low, piece.high, turns):
                 ends = piece.restitution(np.array([low, high]))
                 found.append(Branch(low, high, float(ends[0]), float(ends[1]), piece))
         return tuple(found)
+
+    @cached_property
+    def ends(self) -> list[float]:
+        """ε at both ends of all branches, ascending."""
+        return sorted(value for branch in self.branches for value in (branch.first, branch.last))
 
     @cached_property
     def edges(self) -> tuple[Floats, ...]:

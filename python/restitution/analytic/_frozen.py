@@ -333,8 +333,9 @@ def floats(x: ArrayLike, name: str = "x", unit: str | None = "1") -> Floats:
 
 
 def cosine_of(cos_theta: ArrayLike) -> Floats:
-    """Take cos θ, to which NumPy's cosine hands on the unit of the angle."""
-    return floats(cos_theta, "cos_theta", None)
+    """Take cos θ, to which NumPy's cosine hands on the unit of the angle; nan outside [-1, 1]."""
+    value = floats(cos_theta, "cos_theta", None)
+    return np.where(np.abs(value) <= 1.0, value, np.nan)
 
 
 def probability(q: ArrayLike, name: str = "q") -> Floats:

@@ -78,7 +78,9 @@ class Response:
         if self.impulse.modes()[0] == "part":
             free, more, turned, whole = self._rows(slips, self._free, self._more, self._turned, self._whole)
             return free + friction * (free * more) / (turned**0.5 / whole - friction * more)
-        sums = self._trace, self._minor, self._across, self._turned, self._mixed
+        trace = 3.0 + self._sums[0] - self.nn  # of K_tt
+        across = dot(self._aside[0], self._aside[0]) * self._scale**2.0  # |K_tn|²
+        sums = trace, self._minor, across, self._turned, self._mixed
         gain, nn, trace, minor, across, turned, mixed = self._rows(slips, 1.0 + self.normal, self.nn, *sums)
         push = _push_aside(friction, trace, minor, across, turned, mixed)
         drag = friction * mixed + across * push
@@ -121,21 +123,11 @@ class Response:
         """The determinant of K_tt, n·adj(K) n."""
         return 2.0 + self._sums[0] - self.nn + self._reach[0] * self._reach[1] * self._scale
 
-    @property
-    def _trace(self) -> Floats:
-        """Of K_tt."""
-        return 3.0 + self._sums[0] - self.nn
-
     @cached_property
     def _aside(self) -> tuple[Sequence[Floats], Sequence[Floats]]:
         """Return K_tn and adj(K_tt) K_tn, turned by a right angle and as long as the square of n."""
         aside = cross(self.down, cross(self._turn, self.lever))
         return aside, [x + self._reach[1] * a for x, a in zip(aside, self.arm, strict=True)]
-
-    @cached_property
-    def _across(self) -> Floats:
-        """|K_tn|²."""
-        return dot(self._aside[0], self._aside[0]) * self._scale**2.0
 
     @cached_property
     def _turned(self) -> Floats:

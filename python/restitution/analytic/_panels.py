@@ -56,17 +56,8 @@ def panels(function: Function, low: float, high: float) -> Floats:
     raise ArithmeticError(f"no bound on the function near {lows[0]!r}")
 
 
-def roots(function: Function, low: float, high: float) -> list[float]:
-    """Return angles strictly between low and high at which the function is 0, ascending."""
-    return _zeros(function, low, high, derivative=False)
-
-
-def extremes(function: Function, low: float, high: float) -> list[float]:
-    """Return angles strictly between low and high at which the derivative is 0, ascending."""
-    return _zeros(function, low, high, derivative=True)
-
-
-def _zeros(function: Function, low: float, high: float, *, derivative: bool) -> list[float]:
+def roots(function: Function, low: float, high: float, *, derivative: bool = False) -> list[float]:
+    """Return angles strictly between low and high at which a function, or its derivative, is 0, ascending."""
     found: list[float] = []
     if not np.any(function(np.linspace(low, high, 129))):
         return found  # 0 throughout

@@ -91,14 +91,12 @@ class RoughFirstImpact(BranchedFirstImpact):
         squared = np.float64(self.fall.squared_speed(self.body.radius))
         return float(coefficient(self.law.normal, squared, float(np.sqrt(squared))))
 
-    @cached_property
-    def _support(self) -> tuple[float, float]:
-        ends = [value for branch in self._curve.branches for value in (branch.first, branch.last)]
-        return min(*ends, self._bounce), max(*ends, self._bounce)
+    def support(self) -> tuple[float, float]:
+        low, high = super().support()
+        return min(low, self._bounce), max(high, self._bounce)
 
     def restitution(self, cos_theta: ArrayLike) -> Values:
-        cosine = cosine_of(cos_theta)
-        theta = np.arccos(np.where(np.abs(cosine) <= 1.0, cosine, np.nan))
+        theta = np.arccos(cosine_of(cos_theta))
         return scalar(np.where(theta <= self._curve.limit, self._curve.restitution(theta), np.nan))
 
     def at(self, normal: ArrayLike) -> Values:

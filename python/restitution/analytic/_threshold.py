@@ -9,7 +9,7 @@ from restitution.analytic._disc import Number, turned
 from restitution.analytic._frozen import check
 from restitution.analytic._hull import Outline, Side
 from restitution.analytic._impulse import Impulse, Mode
-from restitution.analytic._panels import extremes
+from restitution.analytic._panels import roots
 from restitution.bodies import Body, RoughSphere, Turned
 from restitution.laws import Law
 
@@ -62,5 +62,6 @@ def _greatest(impulse: Impulse, mode: Mode, side: Side) -> float:
         height, arm = side.hull.contact(*turned(theta))
         return impulse.threshold(mode, height, arm)
 
-    angles = np.array([side.low, *extremes(threshold, side.low, side.high), side.high])
+    level = roots(threshold, side.low, side.high, derivative=True)
+    angles = np.array([side.low, *level, side.high])
     return max(0.0, float(np.max(threshold(angles))))

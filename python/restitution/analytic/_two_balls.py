@@ -54,7 +54,6 @@ class TwoBallsFirstImpact(FirstImpact):
         The contact is with the lower sphere, hence the same value at cos θ and -cos θ.
         """
         cosine = np.abs(cosine_of(cos_theta))
-        cosine = np.where(cosine <= 1.0, cosine, np.nan)
         return scalar(self._impact.restitution(cosine, np.sqrt((1.0 - cosine) * (1.0 + cosine))))
 
     def cos_theta(self, restitution: ArrayLike) -> Values:

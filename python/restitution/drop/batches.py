@@ -32,13 +32,13 @@ def origin(found: int, particles: int, batches: int) -> str:
     return "none: interrupted before the second batch"
 
 
-def standard_errors(parts: Sequence[dict[str, FloatArray]]) -> dict[str, Any]:
+def standard_errors(parts: Sequence[dict[str, FloatArray]], row: str) -> dict[str, Any]:
     """Return the standard errors of the moments in each row, by the jackknife over batches of particles.
 
     The impacts of a particle are correlated, particles are not. With θ_(b) a moment of all batches but b the
     error is √((n - 1)/n Σ_b (θ_(b) - θ̄)²) (B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans,
     SIAM 1982), for moments that are not sums over particles as well. Each of `parts` has ``number`` and the
-    moments of a batch, shape (rows,); each error has its values and attributes.
+    moments of a batch, shape (rows,); each error is a variable over `row`.
     """
     n = np.array([part["number"] for part in parts], dtype=np.float64)
     mean, variance, skewness, kurtosis, fraction = (
@@ -65,6 +65,6 @@ def standard_errors(parts: Sequence[dict[str, FloatArray]]) -> dict[str, Any]:
         errors = np.sqrt((size - 1.0) * estimates.var(axis=0))
     text = "standard error of {} over {} batches of particles; NaN where fewer than two have an impact"
     return {
-        f"{name}_error": (values, {"long_name": text.format(name, size)})
+        f"{name}_error": (row, values, {"long_name": text.format(name, size)})
         for name, values in zip(_NAMES, errors, strict=True)
     }

@@ -110,11 +110,15 @@ def _energies(
 
 
 _MEANS = {
-    "energy_before": "mean kinetic energy before the impact",
-    "energy_change": "mean change of the kinetic energy by the impact",
-    "energy_change_above_one": "the same, of the impacts with restitution > 1",
+    "energy_before": ("mean kinetic energy before the impact", "J"),
+    "energy_change": ("mean change of the kinetic energy by the impact", "J"),
+    "energy_change_above_one": ("the same, of the impacts with restitution > 1", "J"),
+    "paid_by_rotation": (
+        "share of rotation in what rotation and sideways motion lost in the impacts with restitution > 1",
+        "1",
+    ),
 }
-_PAID = "share of rotation in what rotation and sideways motion lost in the impacts with restitution > 1"
+"""What they are, and their units."""
 
 
 def budget_by_row(
@@ -138,9 +142,7 @@ def budget_by_row(
         "above_one": (row, total[:, 1, 3].astype(np.int64), {"long_name": "impacts with restitution > 1"}),
     }
     for name, values in found.items():
-        dims = (row,) if name == "paid_by_rotation" else (row, "energy")
-        unit = "1" if name == "paid_by_rotation" else "J"
-        text = _PAID if name == "paid_by_rotation" else _MEANS[name]
+        dims, (text, unit) = (row, "energy")[: values.ndim], _MEANS[name]
         about[name] = (dims, values, {"long_name": text, "units": unit})
         if left_out:
             # The jackknife, as in `batches`.

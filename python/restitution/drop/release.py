@@ -40,8 +40,7 @@ def _orientation(value: Any) -> Any:
         return value
     turned = hasattr(value, "as_quat")
     if turned:
-        # as_quat(scalar_first=True) needs SciPy 1.14.
-        value = np.roll(np.atleast_2d(value.as_quat()), 1, axis=1)
+        value = np.atleast_2d(value.as_quat(scalar_first=True))
     angles = _array("orientation", value, _ORIENTATIONS, "rad", 1, 2)
     if angles.ndim == 2 and angles.shape[1] not in (2, 4):
         raise ParameterError(wrong("orientation", value, _ORIENTATIONS))

@@ -142,9 +142,7 @@ def statistics(
         names = MOMENTS | {"number": "number"}
         rows = [{name: one[key][inner] for name, key in names.items()} for one in each]
         row = "impact" if edges["velocity"] is None else "velocity"
-        found = found.assign(
-            {name: (row, values, attrs) for name, (values, attrs) in standard_errors(rows).items()}
-        )
+        found = found.assign(standard_errors(rows, row))
     why = "none: counts_only leaves the moments out" if counts_only else None
     found.attrs["standard_errors"] = why or origin(len(rows), ensemble.particles, batches)
     if budget and not interrupted:

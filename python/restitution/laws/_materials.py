@@ -19,7 +19,7 @@ from pydantic import (
 )
 
 from restitution import _core
-from restitution._internal.arrays import real, reals
+from restitution._internal.arrays import check_each, real, reals
 from restitution._internal.described import Described, one_of
 from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, wrong
 from restitution._internal.resources import check_room
@@ -175,7 +175,9 @@ _POINT = 120
 _MANY_POINTS = 10_000
 
 
-def _numbers(name: str, unit: str, good: Callable[[float], bool], allowed: str) -> BeforeValidator:
+def _numbers(
+    name: str, unit: str, good: Callable[[Floats], npt.NDArray[np.bool_]], allowed: str
+) -> BeforeValidator:
     """Take a 1-D sequence of numbers in this unit, each of them good."""
 
     def check(value: Any) -> tuple[float, ...]:
@@ -185,11 +187,8 @@ def _numbers(name: str, unit: str, good: Callable[[float], bool], allowed: str) 
             raise ParameterError(wrong(name, value, some))
         if array.size > _MANY_POINTS:
             check_room(name, _POINT * array.size)
-        numbers = tuple(map(float, array))
-        for i, x in enumerate(numbers):
-            if not good(x):
-                raise ParameterError(wrong(f"{name}[{i}]", x, allowed))
-        return numbers
+        check_each(name, array, good(array), allowed)
+        return tuple(array.tolist())
 
     return BeforeValidator(check)
 
@@ -214,12 +213,12 @@ class Tabulated(Material):
 
     v: Annotated[
         tuple[float, ...],
-        _numbers("v", "m s-1", lambda x: 0.0 <= x < np.inf, "a finite number >= 0 (m/s)"),
+        _numbers("v", "m s-1", lambda x: (x >= 0.0) & (x < np.inf), "a finite number >= 0 (m/s)"),
         Allowed("a 1-D array of speeds in m/s"),
     ]
     e: Annotated[
         tuple[float, ...],
-        _numbers("e", "1", lambda x: 0.0 <= x <= 1.0, "a real number in [0, 1]"),
+        _numbers("e", "1", lambda x: (x >= 0.0) & (x <= 1.0), "a real number in [0, 1]"),
         Allowed("a 1-D array of numbers in [0, 1]"),
     ]
 
@@ -266,7 +265,7 @@ class Tabulated(Material):
         >>> round(float(measured(0.5)), 6), len(measured.v)
         (0.93333, 810)
         """
-        return cls(**dict(zip("ve", _points("function", function, fastest, tolerance), strict=True)))
+        return cls(**_points("function", function, fastest, tolerance))
 
     def _arguments(self) -> list[Any]:
         return [np.asarray(self.v, dtype=float), np.asarray(self.e, dtype=float)]
@@ -302,7 +301,7 @@ def _coefficient(allowed: str) -> BeforeValidator:
         if isinstance(value, Material) and (allowed == NORMAL or not isinstance(value, Scattered)):
             return value
         if callable(value) and not isinstance(value, type | Material):
-            return tabulated("normal", value)
+            return Tabulated(**_points("normal", value))
         try:
             return _number.validate_python(value)
         except ValidationError:
@@ -366,15 +365,9 @@ _NARROWEST = 1e-9
 """Of an interval, over its speed."""
 
 
-def tabulated(name: str, function: Callable[[float], float]) -> Tabulated:
-    """Tabulate a function that was given by another name."""
-    v, e = _points(name, function, 100.0, 1e-6)
-    return Tabulated(v=tuple(v), e=tuple(e))
-
-
 def _points(
-    name: str, function: Callable[[float], float], fastest: float, tolerance: float
-) -> tuple[list[float], list[float]]:
+    name: str, function: Callable[[float], float], fastest: float = 100.0, tolerance: float = 1e-6
+) -> dict[str, tuple[float, ...]]:
     """Return speeds, and the function there; see `Tabulated.from_function`."""
     if not callable(function):
         raise ParameterError(wrong(name, function, "a function of the speed"))
@@ -414,4 +407,4 @@ def _points(
         if len(speeds) > _MOST_POINTS:
             text = f" needs more than {_MOST_POINTS:,} points for {tolerance!r}: must be smoother"
             raise ParameterError(Problem(name, text + ", or have a greater tolerance"))
-    return speeds, values
+    return {"v": tuple(speeds), "e": tuple(values)}
