@@ -105,7 +105,6 @@ class BranchedFirstImpact(FirstImpact):
 
     @property
     def probability_above_normal(self) -> float:
-        """P(ε > ε_n), ε_n at the speed of the impact."""
         total = 0.0
         for piece in self._curve.pieces:
             raised = piece.raised

@@ -47,12 +47,10 @@ class Band:
     side: float = 1.0
 
     def contact(self, sine: Number, cosine: Number) -> tuple[Number, Number]:
-        """Return the height h and lever arm a."""
         height = self.radius - self.place * cosine + self.offset * sine
         return height, (self.place * sine + self.offset * cosine) * self.side
 
     def cosines(self, height: float) -> tuple[float, ...]:
-        """Cos θ at which the centre of mass is so high, if it ever is."""
         distance, middle = math.hypot(self.place, self.offset), math.atan2(self.offset, -self.place)
         share = (height - self.radius) / distance if distance else math.nan
         if not abs(share) <= 1.0:
@@ -68,14 +66,12 @@ class Ellipsoid:
     polar: float
 
     def contact(self, sine: Number, cosine: Number) -> tuple[Number, Number]:
-        """Return the height h and lever arm a."""
         across, along = self.equatorial * sine, self.polar * cosine
         height = (across * across + along * along) ** 0.5
         excess = abs((self.polar - self.equatorial) * (self.polar + self.equatorial))
         return height, excess * sine * cosine / height
 
     def cosines(self, height: float) -> tuple[float, ...]:
-        """Cos θ at which the centre of mass is so high, if it ever is."""
         a, c = self.equatorial, self.polar
         square = (height - a) * (height + a) / ((c - a) * (c + a)) if a != c else math.nan
         return (math.sqrt(square),) if square >= 0.0 else ()

@@ -91,7 +91,6 @@ class RigidFirstImpact(FirstImpact):
 
     @property
     def probability_above_normal(self) -> float:
-        """P(ε > ε_n), ε_n at the speed of the impact."""
         if "part" not in self._impulse.modes():
             return 0.0
         above = self._sampled(self._cover[0], raised=True)

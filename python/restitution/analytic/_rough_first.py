@@ -30,24 +30,20 @@ class ContactTilt(Tilt):
     asperities: int
 
     def below(self, theta: ArrayLike) -> Floats:
-        """Return the probability of angles up to a."""
         return np.asarray(self._nearer(np.asarray(theta, dtype=np.float64)) / self._nearer(self.limit))
 
     def density(self, theta: ArrayLike) -> Floats:
-        """Return the probability density of a, per rad."""
         angle = np.asarray(theta, dtype=np.float64)
         none = np.exp((self.asperities - 1) * _log_farther(angle))
         return np.asarray(0.5 * self.asperities * none * np.sin(angle) / self._nearer(self.limit))
 
     def quantile(self, share: Floats) -> Floats:
-        """Return the angle up to which the probability is ``share``."""
         rest = np.log1p(-share * self._nearer(self.limit))
         theta: Floats = 2.0 * np.arcsin(np.sqrt(-np.expm1(rest / self.asperities)))
         return theta
 
     @property
     def edges(self) -> Floats:
-        """Angles between which the density is smooth."""
         edges: Floats = 2.0 / np.sqrt(self.asperities) * np.arange(1.0, _FARTHEST + 1.0)
         return edges
 

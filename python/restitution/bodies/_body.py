@@ -75,7 +75,6 @@ class Body(AnyBody):
 
     @cached_property
     def compiled(self) -> _core.Solid:
-        """The body as the core knows it, made and checked once."""
         made: _core.Solid = _core.body(type(self).__name__, self._arguments())
         return made
 

@@ -139,7 +139,6 @@ class RigidBody(AnyBody):
 
     @cached_property
     def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
         made: _core.Rigid = _core.body(type(self).__name__, self._arguments())
         return made
 

@@ -193,7 +193,6 @@ class Rough(RigidBody):
 
     @cached_property
     def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
         barrel = isinstance(self.body, Spherocylinder)
         spheres, inertia = _spheres(self.body), _inertia(self.body.compiled)
         own = (self.asperities, self.asperity_radius, plain(self.heights), self.seed)

@@ -28,39 +28,25 @@ _FORMS = "{}, {}, {} or {}".format(*map(repr, get_args(Form)))
 _MOST = 0.1
 """Out-of-roundness over diameter up to which a ball is called nearly round."""
 
-GRADES = {
-    3: 0.08e-6,
-    5: 0.13e-6,
-    10: 0.25e-6,
-    16: 0.4e-6,
-    20: 0.5e-6,
-    24: 0.6e-6,
-    28: 0.7e-6,
-    40: 1.0e-6,
-    48: 1.2e-6,
-    60: 1.5e-6,
-    100: 2.5e-6,
-    200: 5e-6,
-    500: 13e-6,
-    1000: 25e-6,
+_ALLOWED = {  # by grade, in m: deviation from spherical form, and arithmetic mean roughness Ra
+    3: (0.08e-6, 0.010e-6),
+    5: (0.13e-6, 0.014e-6),
+    10: (0.25e-6, 0.020e-6),
+    16: (0.4e-6, 0.025e-6),
+    20: (0.5e-6, 0.032e-6),
+    24: (0.6e-6, 0.040e-6),
+    28: (0.7e-6, 0.050e-6),
+    40: (1.0e-6, 0.060e-6),
+    48: (1.2e-6, None),
+    60: (1.5e-6, 0.080e-6),
+    100: (2.5e-6, 0.100e-6),
+    200: (5e-6, 0.150e-6),
+    500: (13e-6, None),
+    1000: (25e-6, None),
 }
-"""Allowed deviation from spherical form in m: ISO 3290-1 up to 200; 48, 500 and 1000 of ANSI/ABMA 10."""
-
-
-ROUGHNESS = {
-    3: 0.010e-6,
-    5: 0.014e-6,
-    10: 0.020e-6,
-    16: 0.025e-6,
-    20: 0.032e-6,
-    24: 0.040e-6,
-    28: 0.050e-6,
-    40: 0.060e-6,
-    60: 0.080e-6,
-    100: 0.100e-6,
-    200: 0.150e-6,
-}
-"""Allowed arithmetic mean roughness Ra in m: ISO 3290-1."""
+"""ISO 3290-1; of 48, 500 and 1000, which are those of ANSI/ABMA 10, the deviation alone."""
+GRADES = {grade: form for grade, (form, _) in _ALLOWED.items()}
+ROUGHNESS = {grade: roughness for grade, (_, roughness) in _ALLOWED.items() if roughness is not None}
 
 
 class _Asked(Parameters):
