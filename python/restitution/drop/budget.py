@@ -10,6 +10,7 @@ import numpy as np
 from restitution import _core
 from restitution._internal.arrays import FloatArray, reals
 from restitution.bodies import RigidBody
+from restitution.drop.dataset import inertia_of
 from restitution.drop.recorded import RECORDS, attribute, check_frame, variables
 from restitution.drop.resting import in_body
 
@@ -174,10 +175,7 @@ def _sums(
     body = run.body
     pose = "attitude" if isinstance(body, RigidBody) else "axis"
     columns = ["impact_velocity", "restitution", *_STATES, pose]
-    if isinstance(body, RigidBody):
-        names = {name: getattr(body.compiled, name) for name in ("principal_moments", "principal_axes")}
-    else:
-        names = {name: getattr(body, name) for name in ("transverse_inertia", "axial_inertia")}
+    inertia = inertia_of(body)
     block = max(1, _BLOCK // run.impacts)
     found = np.zeros((rows, 3, 4))
     for start in range(first, end, block):
@@ -186,7 +184,7 @@ def _sums(
         if interrupted:
             raise interrupted
         velocity, restitution, *states = (table[name][1] for name in columns)
-        before, after = _energies(body.mass, names, states)
+        before, after = _energies(body.mass, inertia, states)
         if velocity_edges is None:
             place = np.broadcast_to(np.arange(velocity.shape[1]), velocity.shape)
         else:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._core import STOP_REASONS
-from restitution.bodies import Body, RigidBody
+from restitution.bodies import AnyBody, RigidBody
 from restitution.drop.energy import ledger_of
 from restitution.drop.run import Run
 
@@ -37,15 +37,8 @@ def dataset(
         given = run.orientation[rows]
         variables["orientation"] = (("particle", "angle_and_azimuth")[: given.ndim], given, about)
     attrs = attributes(run, "Impacts of bouncing aspherical particles")
-    if "axis" in table:
-        body = run.body
-        assert isinstance(body, Body)
-        attrs |= {name: getattr(body, name) for name in ("mass", "transverse_inertia", "axial_inertia")}
-    if "attitude" in table:
-        body = run.body
-        assert isinstance(body, RigidBody)
-        attrs |= {"mass": body.mass, "principal_moments": body.compiled.principal_moments}
-        attrs |= {"principal_axes": body.compiled.principal_axes}
+    if "axis" in table or "attitude" in table:
+        attrs |= inertia_of(run.body)
     attrs |= ledger_of(*(table[name][1] for name in ("impact_velocity", "restitution", "energy_ratio")))
     reasons = table["stop_reason"][1]
     cut_short = np.count_nonzero(reasons == STOP_REASONS.index("interrupted"))
@@ -56,6 +49,14 @@ def dataset(
             + (", others that were cut short are left out" if "particle" in table else "")
         )
     return xr.Dataset(variables, attrs=attrs)
+
+
+def inertia_of(body: AnyBody) -> dict[str, Any]:
+    """Return mass and moments of inertia by the names of attributes, without an axis the principal ones."""
+    if isinstance(body, RigidBody):
+        names: tuple[str, ...] = ("mass", "principal_moments", "principal_axes")
+        return {name: getattr(body.compiled, name) for name in names}
+    return {name: getattr(body, name) for name in ("mass", "transverse_inertia", "axial_inertia")}
 
 
 PAPER = {"references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)"}

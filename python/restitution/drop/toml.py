@@ -140,11 +140,8 @@ def table_of(parameters: Parameters) -> dict[str, Any]:
         raise ParameterError(Problem("law", f" = {parameters!r}: a function cannot be written to a file"))
     every = {name: getattr(parameters, name) for name in type(parameters).model_fields}
     fields = {name: _plain(value) for name, value in every.items() if value is not None}
-    for selector, kinds in _KINDS.values():
-        for name, kind in kinds.items():
-            if type(parameters) is kind:
-                return {selector: name, **fields}
-    return fields
+    own = kebab(type(parameters).__name__)
+    return {selector: own for selector, kinds in _KINDS.values() if own in kinds} | fields
 
 
 def _plain(value: Any) -> Any:

@@ -98,7 +98,7 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     import xarray as xr
 
     _check(data)
-    turns = _top(data) if "attitude" in data else _symmetric(_slender(data))
+    turns = _top(data) if "attitude" in data else _symmetric(data)
     pulled = np.array(_gravity(*pull("data", data)))
     heights = np.broadcast_to(released_from("data", data), data.sizes["particle"])
     one = _particle(data.assign(release_height=("particle", heights)), particle)
@@ -168,7 +168,12 @@ def _check(data: xr.Dataset) -> None:
         raise ParameterError(wrong("data.release_velocity", velocity, allowed))
 
 
-def _symmetric(slender: float) -> _Turns:
+def _symmetric(data: xr.Dataset) -> _Turns:
+    across = attribute("data", data, "transverse_inertia", "a finite number > 0", lambda j: 0.0 < j < np.inf)
+    most = 2.0 * across * (1.0 + 1e-9)  # of any body, with rounding
+    allowed = f"a finite number in (0, 2 transverse_inertia = {2.0 * across:g}]"
+    slender = 1.0 - attribute("data", data, "axial_inertia", allowed, lambda j: 0.0 < j <= most) / across
+
     def turns(begin: dict[str, FloatArray], elapsed: FloatArray) -> dict[str, FloatArray]:
         axis, spin = begin["axis"], begin["angular_velocity"]
         along = np.sum(spin * axis, axis=1, keepdims=True)
@@ -201,14 +206,6 @@ def _top(data: xr.Dataset) -> _Turns:
         return {"attitude": turned, "angular_velocity": later}
 
     return turns
-
-
-def _slender(data: xr.Dataset) -> float:
-    """Return 1 - J/J'; of no body J is above 2J'."""
-    across = attribute("data", data, "transverse_inertia", "a finite number > 0", lambda j: 0.0 < j < np.inf)
-    most = 2.0 * across * (1.0 + 1e-9)  # rounding
-    allowed = f"a finite number in (0, 2 transverse_inertia = {2.0 * across:g}]"
-    return 1.0 - attribute("data", data, "axial_inertia", allowed, lambda j: 0.0 < j <= most) / across
 
 
 def times_of(time: FloatArray) -> FloatArray:
