@@ -145,18 +145,12 @@ def _turned(body: Turned, unit: float) -> tuple[Side, ...]:
 def _sides(body: Body, unit: float) -> tuple[Side, ...]:
     one, two = body.compiled.outline
     if one[:3] == two[:3]:  # the halves of one ellipsoid
-        hull = _hull(one, unit)
-        level = isinstance(hull, Ellipsoid) or hull.place == 0.0  # it looks the same upside down
-        return (Side(0.0, 0.5 * math.pi if level else math.pi, hull),)
+        centre, along, across = (length / unit for length in one[:3])
+        if one[1] != one[2]:  # its centre is the centre of mass
+            return (Side(0.0, 0.5 * math.pi, Ellipsoid(across, along)),)
+        return (Side(0.0, math.pi if centre else 0.5 * math.pi, Ball(across, centre)),)
     upper, lower = Ball(one[1] / unit, one[0] / unit), Ball(two[1] / unit, two[0] / unit)
     if upper.radius == lower.radius and upper.place == -lower.place:
         return (Side(0.0, 0.5 * math.pi, lower),)
     turn = math.acos((upper.radius - lower.radius) / (upper.place - lower.place))  # both touch
     return Side(0.0, turn, lower), Side(turn, math.pi, upper)
-
-
-def _hull(arc: list[float], unit: float) -> Hull:
-    centre, along, across, *_ = arc
-    if along == across:
-        return Ball(across / unit, centre / unit)
-    return Ellipsoid(across / unit, along / unit)  # its centre is the centre of mass

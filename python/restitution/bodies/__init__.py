@@ -6,7 +6,6 @@ from restitution.bodies._body import AnyBody as AnyBody
 from restitution.bodies._body import Body as Body
 from restitution.bodies._body import of_attributes as of_attributes
 from restitution.bodies._clump import Clump
-from restitution.bodies._die import Die
 from restitution.bodies._dumbbell import Dumbbell
 from restitution.bodies._ellipsoid import Ellipsoid, Superellipsoid
 from restitution.bodies._ellipsoid import farthest as farthest
@@ -14,7 +13,7 @@ from restitution.bodies._ellipsoid import outermost as outermost
 from restitution.bodies._given import Wall as Wall
 from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._mesh import Mesh
-from restitution.bodies._polyhedra import Box, ConvexPolyhedron
+from restitution.bodies._polyhedra import Box, ConvexPolyhedron, Die
 from restitution.bodies._revolution import Cylinder, Egg, Revolution, Ring, TruncatedCone
 from restitution.bodies._revolution import Turned as Turned
 from restitution.bodies._rigid import RigidBody as RigidBody
