@@ -142,11 +142,6 @@ class Kept(KeyboardInterrupt):
         self.late = late
 
 
-def press_again() -> None:
-    """Say that a file is being written, for `put_off`."""
-    tell("interrupted; the file is being written, press Ctrl-C again to abandon it")
-
-
 def fail(message: str, code: int) -> NoReturn:
     """Print the error and exit."""
     for line in message.splitlines():

@@ -1,7 +1,7 @@
 """The commands without gravity: `pair` and `gas`."""
 
 from collections.abc import Callable, Iterator
-from functools import partial
+from importlib import import_module
 from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -37,42 +37,48 @@ _BESIDES = ("body", "other", "law", "state", "states", "record", "threads", "pro
 
 def _written(
     name: str,
-    function: Callable[..., "xr.Dataset"],
+    call: str,
+    summary: Callable[["xr.Dataset"], Iterator[str]],
     run: Path,
     out: Path,
-    options: dict[str, Any],
-    summary: Callable[["xr.Dataset"], Iterator[str]],
     *,
+    threads: int | None,
     overwrite: bool,
+    quiet: bool,
+    **options: Any,
 ) -> None:
-    """Call a function with the bodies and the law of a file, and the arguments in its table of this name."""
-    from restitution._internal.parameters import ParameterError
-    from restitution.drop.toml import Reader, tables_in
-    from restitution.pair import Plane
+    """Call a function of a folder with the bodies and the law of a file, and the arguments in its table."""
+    with errors_in_a_line("netCDF4"):
+        from restitution._internal.parameters import ParameterError
+        from restitution.drop.toml import Reader, tables_in
+        from restitution.pair import Plane
 
-    parameters = list(signature(function).parameters)
-    meets = "other" in parameters
-    reader = Reader(tables_in(run), ("body", *(["other"] if meets else []), "law", name))
-    bodies = list(reader.several("body", single=meets).values()) or [None]
-    parts: list[Any] = [bodies if isinstance(reader.tables.get("body"), list) and not meets else bodies[0]]
-    if meets:
-        other = reader.table("other")
-        plane = other == {"shape": "plane"}
-        parts.append(Plane() if plane else reader.chosen("other", other) if other else bodies[0])
-    parts.append(reader.chosen("law", reader.table("law")))
-    table = reader.table(name)
-    keys = [key for key in parameters if key not in _BESIDES]
-    reader.only(name, table, keys)
-    reader.finish(str(run))
+        function = getattr(import_module(f"restitution.{name}"), call)
+        parameters = list(signature(function).parameters)
+        meets = "other" in parameters
+        reader = Reader(tables_in(run), ("body", *(["other"] if meets else []), "law", name))
+        bodies = list(reader.several("body", single=meets).values()) or [None]
+        several = isinstance(reader.tables.get("body"), list) and not meets
+        parts: list[Any] = [bodies if several else bodies[0]]
+        if meets:
+            other = reader.table("other")
+            plane = other == {"shape": "plane"}
+            parts.append(Plane() if plane else reader.chosen("other", other) if other else bodies[0])
+        parts.append(reader.chosen("law", reader.table("law")))
+        table = reader.table(name)
+        keys = [key for key in parameters if key not in _BESIDES]
+        reader.only(name, table, keys)
+        reader.finish(str(run))
+        how = {"threads": threads, "progress": progress(quiet), **options}
 
-    def work() -> "xr.Dataset":
-        try:
-            return function(*parts, **table, **options)
-        except ParameterError as error:
-            own = (p._replace(name=f"{name}.{p.name}") if p.name in keys else p for p in error.problems)
-            raise ValueError("\n".join(f"{run}: {problem}" for problem in own)) from None
+        def work() -> Any:
+            try:
+                return function(*parts, **table, **how)
+            except ParameterError as error:
+                own = (p._replace(name=f"{name}.{p.name}") if p.name in keys else p for p in error.problems)
+                raise ValueError("\n".join(f"{run}: {problem}" for problem in own)) from None
 
-    written(work, summary, run, out, overwrite=overwrite)
+        written(work, summary, run, out, overwrite=overwrite, quiet=quiet)
 
 
 def pair(
@@ -91,12 +97,8 @@ def pair(
     rotational_temperature or spin, encounters, impact_parameter, seed. The file
     holds what that returns.
     """
-    with errors_in_a_line("netCDF4"):
-        import restitution as rs
-
-        options = {"record": record, "threads": threads, "progress": progress(quiet)}
-        summary = partial(_pairs, quiet=quiet)
-        _written("pair", rs.pair.encounters, run, out, options, summary, overwrite=overwrite)
+    how: dict[str, Any] = {"threads": threads, "overwrite": overwrite, "quiet": quiet, "record": record}
+    _written("pair", "encounters", _pairs, run, out, **how)
 
 
 def gas(
@@ -115,29 +117,20 @@ def gas(
     translational_temperature, rotational_temperature, particles, collisions,
     number_density, heating, seed and others. The file holds what that returns.
     """
-    with errors_in_a_line("netCDF4"):
-        import restitution as rs
-
-        options: dict[str, Any] = {"record": record, "threads": threads, "progress": progress(quiet)}
-        options["checkpoint"] = checkpoint
-        summary = partial(_gas, quiet=quiet)
-        _written("gas", rs.gas.cool, run, out, options, summary, overwrite=overwrite)
+    how: dict[str, Any] = {"threads": threads, "overwrite": overwrite, "quiet": quiet, "record": record}
+    _written("gas", "cool", _gas, run, out, checkpoint=checkpoint, **how)
 
 
-def _pairs(data: "xr.Dataset", *, quiet: bool) -> Iterator[str]:
+def _pairs(data: "xr.Dataset") -> Iterator[str]:
     from restitution._core import PAIR_ENDINGS
 
-    if quiet:
-        return
     met, count = int((data.contacts > 0).sum()), data.sizes["encounter"]
     yield f"{met} of {count} encounters have {int(data.contacts.sum())} contacts."
     if collapsed := int((data.ending == PAIR_ENDINGS.index("collapse")).sum()):
         yield f"{collapsed} ended because contacts accumulate or last (collapse)."
 
 
-def _gas(data: "xr.Dataset", *, quiet: bool) -> Iterator[str]:
-    if quiet:
-        return
+def _gas(data: "xr.Dataset") -> Iterator[str]:
     warm = data["translational_temperature"]
     kept = ", ".join(f"{part:.4g}" for part in (warm.isel(time=-1) / warm.isel(time=0)).values.ravel())
     yield f"After {float(data.collisions[-1]):.4g} collisions of a particle T_tr is {kept} of what it was."

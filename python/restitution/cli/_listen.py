@@ -75,6 +75,12 @@ def listen(
     covariance (netCDF). Several drops of a ball give one answer, with a scatter
     between them as of other plates or hands.
     """
+    options = locals()
+
+    def called(name: str) -> str:
+        """Return the name of the option that gives a parameter."""
+        return name.replace("uncertainty", "error")
+
     with errors_in_a_line("netCDF4", "restitution.experiment.listen"):
         from restitution._internal.parameters import renamed
         from restitution.experiment.listen import Setting, write
@@ -83,23 +89,8 @@ def listen(
             given = {"--diameter": diameter, "--out": out}
             absent = [option for option, value in given.items() if value is None]
             raise ValueError(f"{' and '.join(absent)}: missing; must be given")
-        with renamed(lambda name: name.replace("uncertainty", "error")):  # as the options are called
-            setting = Setting(
-                diameter=diameter,
-                mass=mass,
-                drop=drop,
-                drop_uncertainty=drop_error,
-                time_uncertainty=time_error,
-                gravity=gravity,
-                gravity_uncertainty=gravity_error,
-                clock_uncertainty=clock_error,
-                out_of_roundness=out_of_roundness,
-                roughness=roughness,
-                wall=wall,
-                contact_time=contact_time,
-                contact_uncertainty=contact_error,
-                doubtful=doubtful,
-            )
+        with renamed(called):
+            setting = Setting(**{name: options[called(name)] for name in Setting.model_fields})
         analysis = write(files, out, setting, replace=overwrite)
         for warning in analysis.warnings:
             tell(f"note: {warning}")

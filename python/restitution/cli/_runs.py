@@ -19,7 +19,6 @@ from restitution.cli._common import (
     RunFile,
     Threads,
     errors_in_a_line,
-    press_again,
     progress,
 )
 from restitution.cli._process import put_off, say, tell
@@ -64,10 +63,11 @@ def simulate(
         how = {"until": until, "threads": threads, "progress": progress(quiet)}
         written(
             lambda: simulate_run(parameters, record=checked_record(record), **how),  # type: ignore[arg-type]
-            lambda data: () if quiet else _summary(data),
+            _summary,
             run,
             out,
             overwrite=overwrite,
+            quiet=quiet,
         )
 
 
@@ -252,8 +252,7 @@ def _count(
             count = partial(rs.statistics, body, law, **how)
         else:
             count = partial(rs.compare, study.bodies, study.laws, **how)
-        summary = partial(_counts, quiet=quiet)
-        written(count, summary, run, out, overwrite=overwrite, table=table)
+        written(count, _counts, run, out, overwrite=overwrite, quiet=quiet, table=table)
 
 
 def written(
@@ -263,6 +262,7 @@ def written(
     out: Path,
     *,
     overwrite: bool,
+    quiet: bool,
     table: Path | None = None,
 ) -> None:
     """Do the work, write its result, also where Ctrl-C ended it early, and print a summary."""
@@ -284,11 +284,12 @@ def written(
         except SimulationInterrupted as stop:
             found, interrupted = stop.data, stop
             tell("interrupted; writing the impacts so far")
-    with put_off(press_again) as late:
+    again = "interrupted; the file is being written, press Ctrl-C again to abandon it"
+    with put_off(lambda: tell(again)) as late:
         save(found, out, replace=overwrite)
         if table is not None:
             write(table, _rows(found, table), replace=overwrite)
-    for line in summary(found):
+    for line in summary(found) if not quiet else ():
         say(line)
     if interrupted or late:
         raise Kept(late) from interrupted
@@ -316,9 +317,7 @@ def _rows(found: "xr.Dataset", path: Path) -> bytes:
     return bytes(frame.to_parquet(None) if path.suffix == ".parquet" else frame.to_csv().encode())
 
 
-def _counts(found: "xr.Dataset", quiet: bool) -> Iterator[str]:
-    if quiet:
-        return
+def _counts(found: "xr.Dataset") -> Iterator[str]:
     inside, total = int(found["restitution_count"].sum()), int(found["number"].sum())
     yield f"The rows hold {total} impacts, and the bins of restitution {inside} of them."
     if "body" not in found.dims:
