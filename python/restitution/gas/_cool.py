@@ -535,30 +535,27 @@ def _of_kind(
 
 def _warn(data: xr.Dataset) -> None:
     created, collapsed = data.attrs["energy_created_share"], data.attrs["collapse_share"]
+    told = []
     if created > 0.0:
         each = 1.5 * data["translational_temperature"] + 0.5 * data["axis_temperature"].sum("axis")
         if "species" in each.dims:
             each = each.weighted(xr.DataArray(data.attrs["particles"], dims="species")).mean("species")
         gained = np.sum(np.diff(data["created_energy"]) / each[1:].to_numpy())
-        warnings.warn(
+        told.append(
             f"{created:.3g} of the collisions created energy, in a collision of each particle "
             f"{float(gained / data['collisions'][-1]):.2g} of what the gas has: the law does this; "
-            "created_energy has how much",
-            GasWarning,
-            stacklevel=3,
+            "created_energy has how much"
         )
     if collapsed > 1e-2:
-        warnings.warn(
+        told.append(
             f"{collapsed:.3g} of the collisions ended as a collapse, in which bodies stay together; they "
-            "go on with the velocities that they had then",
-            GasWarning,
-            stacklevel=3,
+            "go on with the velocities that they had then"
         )
     if "velocity_exponent" in data:
-        warnings.warn(
+        told.append(
             "the gas has cooled below the smallest normal numbers: velocities at the end are "
             f"2^{int(data['velocity_exponent'][-1])} times too great, and temperatures by the square of it; "
-            "velocity_exponent has the powers",
-            GasWarning,
-            stacklevel=3,
+            "velocity_exponent has the powers"
         )
+    for text in told:
+        warnings.warn(text, GasWarning, stacklevel=3)

@@ -67,23 +67,23 @@ class Pairs:
         law: CollisionLaw,
         *,
         encounters: int,
-        translational_temperature: float | tuple[float, float] | None,
-        rotational_temperature: float | tuple[float, float] | None,
-        speed: float | None,
-        impact_parameter: float | None,
-        spin: npt.ArrayLike | None,
         seed: int,
+        translational_temperature: float | tuple[float, float] | None = None,
+        rotational_temperature: float | tuple[float, float] | None = None,
+        speed: float | None = None,
+        impact_parameter: float | None = None,
+        spin: npt.ArrayLike | None = None,
     ) -> Pairs:
         """Check pairs that are drawn."""
         check_kinds(body, other, law)
-        if (translational_temperature is None) == (speed is None):
-            given = "both" if speed is not None else "neither"
-            text = f": {given} given beside speed; exactly one of the two must be"
-            raise ParameterError(Problem("translational_temperature", text))
-        if (rotational_temperature is None) == (spin is None):
-            given = "both" if spin is not None else "neither"
-            text = f": {given} given beside spin; exactly one of the two must be"
-            raise ParameterError(Problem("rotational_temperature", text))
+        for name, value, other_name, instead in (
+            ("translational_temperature", translational_temperature, "speed", speed),
+            ("rotational_temperature", rotational_temperature, "spin", spin),
+        ):
+            if (value is None) == (instead is None):
+                given = "both" if instead is not None else "neither"
+                text = f": {given} given beside {other_name}; exactly one of the two must be"
+                raise ParameterError(Problem(name, text))
         drawn: dict[str, Any] = {
             "first": 0,
             "encounters": whole("encounters", encounters, 1, 2**40),
@@ -100,24 +100,6 @@ class Pairs:
         if impact_parameter is not None:
             drawn["impact_parameter"] = real("impact_parameter", impact_parameter, "a finite number >= 0 (m)")
         return cls(body, other, law, drawn)
-
-    @classmethod
-    def thermal(
-        cls, body: AnyBody, other: Other, law: CollisionLaw, t: float, ratio: float, count: int, seed: int
-    ) -> Pairs:
-        """Check pairs that are drawn with T_tr = t and T_rot = ratio t."""
-        return cls.of(
-            body,
-            other,
-            law,
-            encounters=count,
-            translational_temperature=t,
-            rotational_temperature=ratio * t,
-            speed=None,
-            impact_parameter=None,
-            spin=None,
-            seed=seed,
-        )
 
     def in_chunks(
         self, threads: int, *, states: bool = False, contacts: bool = False
@@ -288,27 +270,16 @@ def encounters(
         raise ParameterError(wrong("record", record, " or ".join(map(repr, get_args(Record)))))
     number = checked_threads(threads)
     rows = None
+    given: dict[str, Any] = {
+        "translational_temperature": translational_temperature,
+        "rotational_temperature": rotational_temperature,
+        "speed": speed,
+        "impact_parameter": impact_parameter,
+        "spin": spin,
+    }
     if states is None:
-        pairs = Pairs.of(
-            body,
-            other,
-            law,
-            encounters=encounters,
-            translational_temperature=translational_temperature,
-            rotational_temperature=rotational_temperature,
-            speed=speed,
-            impact_parameter=impact_parameter,
-            spin=spin,
-            seed=seed,
-        )
+        pairs = Pairs.of(body, other, law, encounters=encounters, seed=seed, **given)
     else:
-        given = {
-            "translational_temperature": translational_temperature,
-            "rotational_temperature": rotational_temperature,
-            "speed": speed,
-            "impact_parameter": impact_parameter,
-            "spin": spin,
-        }
         for name, value in given.items():
             if value is not None:
                 raise ParameterError(Problem(name, ": given beside states, which say it already"))

@@ -76,7 +76,8 @@ class PairKernel:
         rate = rate_unit(plane=data.attrs.get("other") == "Plane")
         wanted = {name: (("encounter", *last), unit) for name, (last, _, unit) in _KEPT.items()}
         wanted |= dict.fromkeys(_RATE, (("temperature_ratio",), rate))
-        for name, (dims, unit) in {**wanted, "temperature_ratio": (("temperature_ratio",), "1")}.items():
+        wanted["temperature_ratio"] = (("temperature_ratio",), "1")
+        for name, (dims, unit) in wanted.items():
             if name not in data.variables:
                 raise ParameterError(Problem("data", f" lacks {name}, which a PairKernel has"))
             if data[name].dims != dims or data[name].size == 0:
@@ -184,7 +185,8 @@ class PairKernel:
         check_size("encounters", total, total, 16 * 8, "encounters")
         parts, shares, rates, lost = [], [], [], np.zeros(2)
         for place, ratio in enumerate(ratios.tolist()):
-            pairs = Pairs.thermal(body, other, law, temperature, ratio, count, seed)
+            warm = {"translational_temperature": temperature, "rotational_temperature": ratio * temperature}
+            pairs = Pairs.of(body, other, law, encounters=count, seed=seed, **warm)
             met = 0
             for found, hits, flux in pairs.in_chunks(number, states=True, contacts=True):
                 part, left_out = _kept(found, hits, place, plane=isinstance(other, Plane))

@@ -116,7 +116,8 @@ def _of(
     threads: int,
 ) -> dict[str, float]:
     """Follow the encounters of one ratio of temperatures, chunk by chunk."""
-    pairs = Pairs.thermal(body, body, law, temperature, ratio, count, seed)
+    warm = {"translational_temperature": temperature, "rotational_temperature": ratio * temperature}
+    pairs = Pairs.of(body, body, law, encounters=count, seed=seed, **warm)
     sums, squares, collapsed, lasted, rate = np.zeros(4), np.zeros(4), 0, 0, 0.0
     for met, _, flux in pairs.in_chunks(threads):
         rate = flux

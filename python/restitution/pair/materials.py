@@ -17,5 +17,4 @@ def between(law: CollisionLaw, mass_ratio: float = 1.0) -> CollisionLaw:
     size = mass_ratio ** (1.0 / 3.0)
     softer = 0.5 * (size / (1.0 + size)) ** 0.5 * (1.0 + mass_ratio) / mass_ratio
     normal = Viscoelastic(**own | {"dissipation": own["dissipation"] * softer**0.4})
-    fields = {name: getattr(law, name) for name in type(law).model_fields}
-    return type(law)(**fields | {"normal": normal})
+    return law.model_copy(update={"normal": normal})

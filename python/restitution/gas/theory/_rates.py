@@ -203,7 +203,9 @@ def steady_ratio(body: AnyBody, law: Law) -> float:
     >>> round(rs.gas.theory.steady_ratio(body, rs.Frictionless(normal=0.9)), 1)
     12.9
     """
-    closure = _turned(body, law)
+    closure = _closure(body, law)
+    if not closure.axes:
+        raise ParameterError(wrong("body", body, "one that contacts turn; a smooth sphere keeps its spin"))
 
     def growth(logarithm: float) -> float:
         first, second = closure.slopes(math.exp(logarithm))
@@ -324,14 +326,15 @@ def cooling(
         change, (0.0, at[-1] * rate + 1e-9), start, t_eval=at * rate, method="DOP853", rtol=1e-10, atol=1e-10
     )
     cooled = t * np.exp(found.y[0])
-    values = (cooled, cooled * found.y[1], found.y[2])
-    names = ("translational_temperature", "rotational_temperature", "contacts")
-    texts = ("translational temperature", "rotational temperature", "contacts of a particle")
-    units = ("J", "J", "1")
+    variables = {
+        "translational_temperature": (cooled, "translational temperature", "J"),
+        "rotational_temperature": (cooled * found.y[1], "rotational temperature", "J"),
+        "contacts": (found.y[2], "contacts of a particle", "1"),
+    }
     return xr.Dataset(
         {
-            name: ("time", value, {"long_name": text, "units": unit})
-            for name, value, text, unit in zip(names, values, texts, units, strict=True)
+            name: ("time", values, {"long_name": text, "units": unit})
+            for name, (values, text, unit) in variables.items()
         },
         {"time": ("time", at, {"long_name": "time", "units": "s"})},
     )
@@ -345,10 +348,3 @@ def _warm(translational: float, rotational: float) -> tuple[float, float]:
         text = f" = {r:g}, translational_temperature = {t:g}: must be at most a factor of {_FAR:g} apart"
         raise ParameterError(Problem("rotational_temperature", text))
     return t, r / t
-
-
-def _turned(body: AnyBody, law: Law) -> _Closure:
-    closure = _closure(body, law)
-    if not closure.axes:
-        raise ParameterError(wrong("body", body, "one that contacts turn; a smooth sphere keeps its spin"))
-    return closure
