@@ -12,7 +12,7 @@ import xarray as xr
 import restitution as rs
 from reference.command import invoke
 from restitution.cli import BAD_INPUT, FAILED, WARNED
-from restitution.distribution._figure import image
+from restitution.distribution import image
 
 RUN = """
 [body]

@@ -80,17 +80,20 @@ NO_TABLE = r"^data: the speeds, {0}edges, {0}restitution_edge and {0}probability
 @pytest.mark.parametrize(
     ("harm", "told"),
     [
-        (lambda data: data.drop_vars("velocity"), "^data lacks velocity: give the Dataset of a Fluct"),
+        (lambda data: data.drop_vars("velocity"), "^data lacks velocity: must be the Dataset of a Fluct"),
         (
             lambda data: data.drop_vars(["edges", "restitution_edge"]),
-            "^data lacks edges, restitution_edge: give the Dataset of a FluctuatingRestitution$",
+            "^data lacks edges, restitution_edge: must be the Dataset of a FluctuatingRestitution$",
         ),
         (
             lambda data: data.drop_vars("given_lowest"),
-            "^data lacks given_lowest: give the Dataset of a FluctuatingRestitution$",
+            "^data lacks given_lowest: must be the Dataset of a FluctuatingRestitution$",
         ),
-        (lambda data: data.drop_vars("given"), "^data lacks given: give"),
-        (lambda data: data.drop_vars("given_probability_below"), "^data lacks given_probability_below: give"),
+        (lambda data: data.drop_vars("given"), "^data lacks given: must be"),
+        (
+            lambda data: data.drop_vars("given_probability_below"),
+            "^data lacks given_probability_below: must be",
+        ),
         (
             lambda data: data.drop_attrs(deep=False),
             "^data lacks the attributes source, beyond of a FluctuatingRestitution$",

@@ -1,10 +1,12 @@
-"""Signals that end a process, kept from a short block or passed to a function."""
+"""Signals that end a process: raised, kept from a short block or passed to a function."""
 
 import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
+
+T = TypeVar("T")
 
 _ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")  # of which a system has some
 
@@ -24,6 +26,13 @@ def handled(handle: Callable[[int], None]) -> Iterator[None]:
     finally:
         for number, old in before.items():
             signal.signal(number, old)
+
+
+def uninterrupted(found: T, interrupted: KeyboardInterrupt | None) -> T:
+    """Return what the core found, unless a signal ended its work early, which is raised."""
+    if interrupted:
+        raise KeyboardInterrupt from interrupted
+    return found
 
 
 @contextmanager

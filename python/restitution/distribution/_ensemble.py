@@ -9,6 +9,7 @@ import numpy as np
 
 from restitution import _core
 from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.process import uninterrupted
 from restitution._internal.resources import check_size, checked_threads
 from restitution.distribution._table import Floats
 from restitution.drop.release import RandomHeight, RandomSpin
@@ -69,7 +70,7 @@ class Ensemble:
             raise ParameterError(wrong("particles", self.run.particles, allowed))
 
     def rounds(self) -> list[list[tuple[int, int]]]:
-        """Yield the number of the height and the particles of each run; a round spans the heights."""
+        """Return the number of the height and the particles of each run; a round spans the heights."""
         number, heights = self.run.particles * self.run.impacts // _IMPACTS_PER_ROUND + 1, len(self.heights)
         pieces = -(-number // heights)
         share, rest = divmod(self.run.particles, heights)
@@ -129,9 +130,7 @@ class Ensemble:
     def _simulated(self, parts: list[_Part], names: list[str], first: int) -> Impacts:
         """Simulate parts of several runs side by side, whose particles are numbered from `first` on."""
         runs = [(run.parameters(), part) for run, part in parts]
-        table, interrupted = _core.simulate_series(runs, checked_threads(self.threads), names)
-        if interrupted:
-            raise KeyboardInterrupt from interrupted
+        table = uninterrupted(*_core.simulate_series(runs, checked_threads(self.threads), names))
         columns = [table[name][1] for name in names]
         return Impacts(columns[0], columns[1], columns[2] if self.fraction else np.empty((0, 0)), first)
 

@@ -1,15 +1,13 @@
 """Figure of a learned distribution: quantiles over impact velocity, densities, confidence bands."""
 
-import io
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, NullFormatter, StrMethodFormatter
 
-from restitution.distribution._errors import EstimatedDistribution
 from restitution.distribution._table import Floats
+from restitution.distribution._tabulated import TabulatedDistribution
 from restitution.distribution._text import in_gaps
 from restitution.figures import pieces
 from restitution.figures import style as fg
@@ -28,16 +26,8 @@ def _ticks(low: float, high: float) -> list[float]:
     return [tick for tick in ticks if 0.1 * low < tick < 10.0 * high]
 
 
-def image(dist: EstimatedDistribution, suffix: str) -> bytes:
-    """Draw and encode; without a date, so that the same distribution gives the same bytes."""
-    dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
-    content = io.BytesIO()
-    draw(dist).savefig(content, format=suffix, dpi=300, metadata=dated.get(suffix))
-    return content.getvalue()
-
-
 @fg.styled
-def draw(dist: EstimatedDistribution, *, style: fg.Style | None = None) -> Figure:
+def draw(dist: TabulatedDistribution, *, style: fg.Style | None = None) -> Figure:
     """Draw quantiles, densities at four speeds, standard deviation and distance to fresh impacts.
 
     Shaded are pointwise 95 % confidence bands: 1.96 standard errors, over batches of particles, either way.
@@ -95,14 +85,14 @@ def draw(dist: EstimatedDistribution, *, style: fg.Style | None = None) -> Figur
     return figure
 
 
-def _shown(dist: EstimatedDistribution) -> tuple[Floats, Floats]:
+def _shown(dist: TabulatedDistribution) -> tuple[Floats, Floats]:
     """Return the speeds of a curve, and 1 for each, NaN in gaps, where the curve is interrupted."""
     inside = dist.gaps.mean(axis=1)
     v = np.unique(np.concatenate([dist.data["velocity"].to_numpy(), dist.gaps.ravel(), inside]))
     return v, np.where(in_gaps(dist.data, v), np.nan, 1.0)
 
 
-def _given(row: list[Axes], dist: EstimatedDistribution) -> None:
+def _given(row: list[Axes], dist: TabulatedDistribution) -> None:
     """Draw the middle half of ε at a small, a middle and a great condition, over v and over ε at one v."""
     names = {
         "rotational_fraction": r"$E_\mathrm{rot}/E_\mathrm{tot}$",
@@ -146,7 +136,7 @@ def _given(row: list[Axes], dist: EstimatedDistribution) -> None:
         fg.letter(axes, f"({name})")
 
 
-def _quantiles(axes: Axes, dist: EstimatedDistribution) -> None:
+def _quantiles(axes: Axes, dist: TabulatedDistribution) -> None:
     v, known = _shown(dist)
     for q in _LEVELS:
         x = known * dist.clamped().ppf(q, v)
@@ -160,7 +150,7 @@ def _quantiles(axes: Axes, dist: EstimatedDistribution) -> None:
     axes.legend(loc="upper right", ncols=3, title="quantiles" + (", 95 % bands" if dist.has_errors else ""))
 
 
-def _density(axes: Axes, dist: EstimatedDistribution, v: float, color: str) -> None:
+def _density(axes: Axes, dist: TabulatedDistribution, v: float, color: str) -> None:
     low, high = dist.ppf([1e-4, 1.0 - 1e-4], v)
     x = np.linspace(low, high, 400)
     density = np.where(dist.pdf(x, v) > 0, dist.pdf(x, v), np.nan)

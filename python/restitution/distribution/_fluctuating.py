@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
@@ -20,11 +21,11 @@ from restitution.bodies import AnyBody
 from restitution.distribution import _defaults as defaults
 from restitution.distribution._check import Check, largest_distance, warn_of_distance
 from restitution.distribution._ensemble import Ensemble, Impacts
-from restitution.distribution._errors import EstimatedDistribution
 from restitution.distribution._from_statistics import from_statistics
 from restitution.distribution._learn import Given, checked_speeds, condition, learn
 from restitution.distribution._memory import correlations
 from restitution.distribution._store import sealed, unsealed
+from restitution.distribution._tabulated import TabulatedDistribution
 from restitution.distribution._text import released
 from restitution.distribution.sources import header, module
 from restitution.drop import energy
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from restitution.figures.style import Style
 
 
-class FluctuatingRestitution(EstimatedDistribution):
+class FluctuatingRestitution(TabulatedDistribution):
     """The coefficient of restitution as a random number whose distribution depends on the impact velocity.
 
     Make it with `learn`, `from_statistics` or `load`. The methods follow the conventions of `scipy.stats`,
@@ -384,6 +385,14 @@ class FluctuatingRestitution(EstimatedDistribution):
         if "ks_distance" in self.data:
             about += f", ks_distance up to {float(self.data['ks_distance'].max()):.4f}"
         return f"<FluctuatingRestitution: {about}>"
+
+
+def image(dist: FluctuatingRestitution, suffix: str) -> bytes:
+    """Draw and encode; without a date, so that the same distribution gives the same bytes."""
+    dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
+    content = io.BytesIO()
+    dist.figure().savefig(content, format=suffix, dpi=300, metadata=dated.get(suffix))
+    return content.getvalue()
 
 
 def _runs(

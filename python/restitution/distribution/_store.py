@@ -8,12 +8,13 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import check_each, reals
-from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.parameters import ParameterError, Problem
 from restitution.distribution._check import Check
 from restitution.distribution._count import Counted
-from restitution.distribution._table import Floats, Histogram, Table
-from restitution.drop.recorded import check_variables
+from restitution.distribution._table import Floats, Histogram, Table, starts
+from restitution.drop.recorded import check_has, check_variables
 
+_WHOLE = "the Dataset of a FluctuatingRestitution"
 _TABLE = ("edges", "restitution_edge", "probability_below")
 GIVEN = {
     "rotational_fraction": "E_rot/E_tot before the impact (Eq. 12)",
@@ -85,17 +86,11 @@ def assemble(
 
 def _errors(counted: Counted, prefix: str, component: str) -> dict[str, Any]:
     about = "standard error of {}; a batch of particles is a draw"
+    edge = f"{prefix}edge"
+    shares = np.concatenate([np.append(share, np.nan) for share in counted.share_errors])
     found = {
-        "probability_error": (
-            f"{prefix}edge",
-            np.concatenate([np.append(share, np.nan) for share in counted.share_errors]),
-            "the probability of the bin above the edge",
-        ),
-        "probability_below_error": (
-            f"{prefix}edge",
-            np.concatenate(counted.below_errors),
-            "probability_below",
-        ),
+        "probability_error": (edge, shares, "the probability of the bin above the edge"),
+        "probability_below_error": (edge, np.concatenate(counted.below_errors), "probability_below"),
         "mean_error": (component, counted.mean_errors, "the mean"),
         "std_error": (component, counted.std_errors, "the standard deviation"),
         "skewness_error": (component, counted.shape_errors[:, 0], "the skewness"),
@@ -120,47 +115,33 @@ def of_histograms(
 
 
 def _ragged(histograms: list[Histogram], prefix: str) -> dict[str, Any]:
-    edge = f"{prefix}edge"
-    sizes = [part.edges.size for part in histograms]
-    component = f"{prefix}component" if prefix else "node"
+    edge, component = f"{prefix}edge", f"{prefix}component" if prefix else "node"
+    sizes = np.array([part.edges.size for part in histograms], dtype=np.int64)
+    edges = np.concatenate([part.edges for part in histograms])
+    below = np.concatenate([part.cumulative for part in histograms])
+    about_sizes = {"long_name": "edges of the histogram", "sample_dimension": edge}
+    about_edges = {"long_name": "edges of the bins of restitution (Eq. 1)", "units": "1"}
+    about_below = {"long_name": "probability below the edge", "units": "1"}
     return {
-        f"{prefix}edges": (
-            component,
-            np.array(sizes, dtype=np.int64),
-            {"long_name": "edges of the histogram", "sample_dimension": edge},
-        ),
-        f"{prefix}restitution_edge": (
-            edge,
-            np.concatenate([part.edges for part in histograms]),
-            {"long_name": "edges of the bins of restitution (Eq. 1)", "units": "1"},
-        ),
-        f"{prefix}probability_below": (
-            edge,
-            np.concatenate([part.cumulative for part in histograms]),
-            {"long_name": "probability below the edge", "units": "1"},
-        ),
+        f"{prefix}edges": (component, sizes, about_sizes),
+        f"{prefix}restitution_edge": (edge, edges, about_edges),
+        f"{prefix}probability_below": (edge, below, about_below),
     }
 
 
 def check(data: xr.Dataset) -> None:
     """Refuse what is not the Dataset of a distribution, or is damaged."""
-    require(data, "data", ("velocity", *_TABLE), "the Dataset of a FluctuatingRestitution")
+    check_has("data", data, _WHOLE, ("velocity", *_TABLE))
+    check_variables("data", data, "impacts")
     lacking = [name for name in ("source", "beyond") if name not in data.attrs]
     if lacking:
         raise ValueError(f"data lacks the attributes {', '.join(lacking)} of a FluctuatingRestitution")
     prefixes = [""]
     if "given" in data.attrs:
-        names = (
-            "given",
-            "given_components",
-            "given_lowest",
-            "given_highest",
-            *(f"given_{name}" for name in _TABLE),
-        )
-        require(data, "data", names, "the Dataset of a FluctuatingRestitution")
+        names = [f"given_{name}" for name in ("components", "lowest", "highest", *_TABLE)]
+        check_has("data", data, _WHOLE, ("given", *names))
         prefixes.append("given_")
     used = ("velocity", *(f"{prefix}{name}" for prefix in prefixes for name in _TABLE))
-    check_variables("data", data, *used, "impacts")
     for name in used:
         allowed = "finite numbers, as a FluctuatingRestitution has them"
         numbers = reals(f"data.{name}", data[name].to_numpy(), allowed, dimensions=(1,))
@@ -177,28 +158,17 @@ def check(data: xr.Dataset) -> None:
             raise ValueError(f"data: {allowed} are not those of a distribution") from error
 
 
-def require(data: xr.Dataset, name: str, needed: tuple[str, ...], instead: str) -> None:
-    """Refuse what is not a Dataset, or lacks something."""
-    if not isinstance(data, xr.Dataset):
-        raise ParameterError(wrong(name, data, instead))
-    lacking = [variable for variable in needed if variable not in data]
-    if lacking:
-        raise ValueError(f"{name} lacks {', '.join(lacking)}: give {instead}")
-
-
 def table(data: xr.Dataset, prefix: str = "") -> Table:
     """Read a table back; ``"given_"`` is the prefix of the conditional one."""
-    start = np.concatenate([[0], np.cumsum(data[f"{prefix}edges"].to_numpy())]).astype(np.int64)
     nodes = data["velocity"].to_numpy()
+    groups, conditions = np.ones(nodes.size), np.zeros(nodes.size)
     if prefix:
         groups, conditions = data["given_components"].to_numpy(), data["given"].to_numpy()
-    else:
-        groups, conditions = np.ones(nodes.size, dtype=np.int64), np.zeros(nodes.size)
     return Table(
         speeds=nodes,
-        first=np.concatenate([[0], np.cumsum(groups)]).astype(np.int64),
+        first=starts(groups),
         conditions=conditions,
-        start=start,
+        start=starts(data[f"{prefix}edges"].to_numpy()),
         edges=data[f"{prefix}restitution_edge"].to_numpy(),
         cumulative=data[f"{prefix}probability_below"].to_numpy(),
     )

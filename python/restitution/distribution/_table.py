@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from restitution import _core
+from restitution._internal.process import uninterrupted
 from restitution._internal.resources import checked_threads
 
 Floats = npt.NDArray[np.float64]
@@ -108,22 +109,15 @@ class Table:
         shape = np.broadcast_shapes(*(value.shape for value in values))
         points = np.broadcast_to(values[0], shape).ravel()
         at = _flat(values[1], shape), _flat(values[2], shape)
-        found, interrupted = self.mixture.value(what, points, *at, checked_threads(threads))
-        if interrupted:
-            raise KeyboardInterrupt from interrupted
-        return found.reshape(shape)
+        return uninterrupted(*self.mixture.value(what, points, *at, checked_threads(threads))).reshape(shape)
 
     def draw(
         self, v: Floats, z: Floats, shape: tuple[int, ...], seed: int, threads: int | None = None
     ) -> Floats:
         """Draw as many as `shape` says, at v and z broadcast to it."""
         size = int(np.prod(shape, dtype=np.int64))
-        found, interrupted = self.mixture.draw(
-            _flat(v, shape), _flat(z, shape), size, seed, checked_threads(threads)
-        )
-        if interrupted:
-            raise KeyboardInterrupt from interrupted
-        return found.reshape(shape)
+        at = _flat(v, shape), _flat(z, shape)
+        return uninterrupted(*self.mixture.draw(*at, size, seed, checked_threads(threads))).reshape(shape)
 
     def weights(self, v: Floats) -> tuple[Ints, Floats]:
         """Return the node below each v and the weight of the one above; beyond the nodes only the nearest."""

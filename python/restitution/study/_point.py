@@ -11,6 +11,7 @@ import xarray as xr
 
 from restitution import _core
 from restitution._core import STOP_REASONS
+from restitution._internal.process import uninterrupted
 from restitution.bodies import Body, RigidBody
 from restitution.drop.dataset import dataset
 from restitution.drop.energy import PULLING
@@ -76,10 +77,8 @@ def count(point: Point, part: tuple[int, int], tell: Tell | None = None) -> Word
     """Run the particles of a part, and store the sums over their impacts."""
     words, edges = list[Words](), point.edges
     if edges is not None:
-        histogram, interrupted = _core.histogram(_parameters(point.run, part), edges, 1, tell, part)
-        if interrupted:
-            raise KeyboardInterrupt from interrupted
-        words.append(histogram.words())
+        counted = uninterrupted(*_core.histogram(_parameters(point.run, part), edges, 1, tell, part))
+        words.append(counted.words())
     if point.records:
         found = _measured(point, _recorded(point, part, tell))
         words += [_values(found, name).ravel().view(np.uint64) for name in sorted(map(str, found.data_vars))]
@@ -129,9 +128,7 @@ def _own_arrays(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _recorded(point: Point, part: tuple[int, int], tell: Tell | None) -> xr.Dataset:
-    table, interrupted = _core.simulate(_parameters(point.run, part), 1, tell, part)
-    if interrupted:
-        raise KeyboardInterrupt from interrupted
+    table = uninterrupted(*_core.simulate(_parameters(point.run, part), 1, tell, part))
     return dataset(point.run.model_copy(update={"particles": part[1] - part[0]}), table)
 
 
