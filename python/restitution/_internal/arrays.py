@@ -132,7 +132,7 @@ def shape(name: str, value: Any) -> tuple[int, ...]:
 
 
 def several(name: str, value: Any, allowed: str, take: Callable[[int, Any], T]) -> list[T]:
-    """Yield the elements of an iterable with their numbers, and stop at a wrong one."""
+    """Take the elements of an iterable with their numbers, up to a wrong one, which is an error."""
     try:
         return [take(number, one) for number, one in enumerate(value)]
     except (ParameterError, MemoryError):  # of one of them, or of what makes them
@@ -161,6 +161,18 @@ def flag(name: str, value: Any) -> bool:
     if not isinstance(value, bool | np.bool_):
         raise ParameterError(wrong(name, value, "True or False"))
     return bool(value)
+
+
+def word(name: str, value: Any, words: Collection[str]) -> str:
+    """Take one of several words."""
+    if not isinstance(value, str) or value not in words:
+        raise ParameterError(wrong(name, value, either(words)))
+    return str(value)
+
+
+def either(words: Collection[str]) -> str:
+    """Name words that are allowed."""
+    return " or ".join(map(repr, words))
 
 
 def generator(name: str, seed: Any) -> np.random.Generator:

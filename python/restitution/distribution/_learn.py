@@ -8,7 +8,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution import _core
-from restitution._internal.arrays import check_each, reals
+from restitution._internal.arrays import check_each, either, reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution._internal.resources import checked_threads, progress_bar
 from restitution.distribution import _nodes
@@ -35,7 +35,7 @@ _SLOWEST, _FASTEST = 1e-100, 1e100
 def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool) -> xr.Dataset:
     """Simulate the ensemble, count its impacts, and measure the result against a fresh ensemble."""
     if given is not None and not (isinstance(given, str) and given in get_args(Given)):
-        raise ParameterError(wrong("given", given, " or ".join(map(repr, get_args(Given))) + " or None"))
+        raise ParameterError(wrong("given", given, f"{either(get_args(Given))} or None"))
     total = (2 if given is None else 3) * ensemble.run.particles
     done = 0
 

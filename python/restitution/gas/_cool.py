@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from restitution import _core
-from restitution._internal.arrays import FloatArray, IntArray, positive, real, whole
+from restitution._internal.arrays import FloatArray, IntArray, positive, real, whole, word
 from restitution._internal.datasets import load, save
 from restitution._internal.files import NETCDF, check, path_for, there
 from restitution._internal.parameters import ParameterError, Problem, wrong
@@ -199,8 +199,7 @@ def cool(
     >>> bool(data["translational_temperature"][-1] < 0.5e-9)
     True
     """
-    if not isinstance(record, str) or record not in get_args(Record):
-        raise ParameterError(wrong("record", record, "'moments' or 'state'"))
+    word("record", record, get_args(Record))
     number = whole("batches", batches, 2, 10**4)
     warm = {
         "translational_temperature": translational_temperature,
@@ -216,11 +215,10 @@ def cool(
         particles, warm = _of_state(body, state, given, number)
     elif translational_temperature is None:
         raise ParameterError(Problem("translational_temperature", ": missing; must be a number > 0 (J)"))
-    kinds = _kinds(body, law, 100_000 if particles is None else particles, *warm.values())
+    kinds = _kinds(body, law, {"particles": 100_000 if particles is None else particles, **warm})
     if not isinstance(law, CollisionLaw):
         raise ParameterError(wrong("law", law, "a collision law"))
-    if not isinstance(phase, str) or phase not in get_args(Phase):
-        raise ParameterError(wrong("phase", phase, "'time' or 'uniform'"))
+    word("phase", phase, get_args(Phase))
     course: dict[str, Any] = {
         "number_density": positive("number_density", number_density, "m-3"),
         "uniform": phase == "uniform",
@@ -320,9 +318,8 @@ def _bodies(body: Any) -> list[Any]:
     return bodies
 
 
-def _kinds(
-    body: Any, law: Any, particles: Any, translational: Any, rotational: Any, spin: Any
-) -> list[_Kind]:
+def _kinds(body: Any, law: Any, given: dict[str, Any]) -> list[_Kind]:
+    """Check numbers of particles and temperatures, each given for all species or one by one."""
     bodies = _bodies(body)
 
     def each(name: str, value: Any) -> list[Any]:
@@ -334,20 +331,16 @@ def _kinds(
             raise ParameterError(wrong(name, value, f"one number, or {len(bodies)}, one for each body"))
         return list(value)
 
-    counts = [whole("particles", one, 1, 2**40) for one in each("particles", particles)]
-    warm = [
-        positive("translational_temperature", t, "J")
-        for t in each("translational_temperature", translational)
-    ]
     kinds = []
-    turning = each("rotational_temperature", rotational)
-    spinning = each("spin_temperature", spin)
-    for one, count, t, r, s in zip(bodies, counts, warm, turning, spinning, strict=True):
-        about = t if r is None else _temperature("rotational_temperature", r)
+    columns = [each(name, value) for name, value in given.items()]
+    for one, count, t, r, s in zip(bodies, *columns, strict=True):
+        number = whole("particles", count, 1, 2**40)
+        warm = positive("translational_temperature", t, "J")
+        about = warm if r is None else _temperature("rotational_temperature", r)
         if s is not None and not isinstance(one, Body):
             raise ParameterError(wrong("spin_temperature", s, f"left out: {type(one).__name__} has no axis"))
         along = about if s is None else _temperature("spin_temperature", s)
-        kinds.append(_Kind(one, count, t, (about, about, along), turned_axes(one, law)))
+        kinds.append(_Kind(one, number, warm, (about, about, along), turned_axes(one, law)))
     return kinds
 
 
@@ -373,13 +366,10 @@ def _of_state(body: Any, state: xr.Dataset, given: FloatArray, batches: int) -> 
             raise ParameterError(
                 wrong("state.velocity", 0.0, "other than 0 for some particle of each species")
             )
-        moment = max(
-            one.principal_moments
-            if isinstance(one, RigidBody)
-            else (one.axial_inertia, one.transverse_inertia)
-        )
+        rigid = isinstance(one, RigidBody)
+        moments = one.principal_moments if rigid else (one.axial_inertia, one.transverse_inertia)
         warm["translational_temperature"].append(float(one.mass * speed))
-        warm["rotational_temperature"].append(float(moment * spin))
+        warm["rotational_temperature"].append(float(max(moments) * spin))
     if not several:
         return counts[0], {name: values[0] for name, values in warm.items()} | {"spin_temperature": None}
     return counts, {**warm, "spin_temperature": None}

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution import _core
-from restitution._internal.arrays import FloatArray, check_each, real, reals, whole
+from restitution._internal.arrays import FloatArray, check_each, real, reals, whole, word
 from restitution._internal.parameters import ParameterError, Parameters, Problem, wrong
 from restitution._internal.resources import check_size, checked_threads, progress_bar
 from restitution.bodies import AnyBody
@@ -266,8 +266,7 @@ def encounters(
     >>> float((data.contacts > 0).mean().round(1))
     0.7
     """
-    if not isinstance(record, str) or record not in get_args(Record):
-        raise ParameterError(wrong("record", record, " or ".join(map(repr, get_args(Record)))))
+    word("record", record, get_args(Record))
     number = checked_threads(threads)
     rows = None
     given: dict[str, Any] = {

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from restitution._internal.arrays import whole
+from restitution._internal.arrays import whole, word
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution.study._tables import number, table, word
+from restitution.study._tables import number, table
 
 _VALUES = (
     "a list of different numbers, or a table { from, to, points } with finite from < to"

@@ -13,7 +13,7 @@ from typing import Any, cast
 
 import xarray as xr
 
-from restitution._internal.arrays import whole
+from restitution._internal.arrays import whole, word
 from restitution._internal.files import path_from
 from restitution._internal.parameters import (
     ParameterError,
@@ -32,7 +32,7 @@ from restitution.drop.statistics import Edges, edges_of
 from restitution.drop.toml import bodies_of, run_of, table_of, tables_in, tables_of
 from restitution.laws import Material
 from restitution.study._axes import Design, design
-from restitution.study._tables import Effort, Forms, copied, effort, forms_of, table, with_errors, word
+from restitution.study._tables import Effort, Forms, copied, effort, forms_of, table, with_errors
 
 Measure = Callable[[xr.Dataset], xr.Dataset]
 """A function of what `restitution.statistics` or `restitution.simulate` returns."""

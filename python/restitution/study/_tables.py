@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from pydantic import BeforeValidator
 
-from restitution._internal.arrays import pair, real, reals, whole
+from restitution._internal.arrays import either, pair, real, reals, whole
 from restitution._internal.parameters import (
     Allowed,
     ParameterError,
@@ -60,18 +60,6 @@ def table(name: str, value: Any, keys: Collection[str]) -> Mapping[str, Any]:
         if stranger not in keys:
             raise ParameterError(unknown(stranger, f"[{name}]", keys, prefix=f"{name}."))
     return value
-
-
-def word(name: str, value: Any, words: Collection[str]) -> str:
-    """Take one of several words."""
-    if not isinstance(value, str) or value not in words:
-        raise ParameterError(wrong(name, value, one_of(words)))
-    return str(value)
-
-
-def one_of(words: Collection[str]) -> str:
-    """Name words that are allowed."""
-    return " or ".join(map(repr, words))
 
 
 def number(name: str, value: Any, allowed: str, good: Callable[[float], bool] = math.isfinite) -> int | float:
@@ -274,7 +262,7 @@ class Learn(Parameters):
 class Fitted(Parameters):
     """A density fitted to the impacts of a window of impact velocity, its cusp at the law's ε_n or fitted."""
 
-    family: Annotated[str, Allowed(one_of(_PARAMETERS))] = "asymmetric-laplace"
+    family: Annotated[str, Allowed(either(_PARAMETERS))] = "asymmetric-laplace"
     velocity: Annotated[tuple[float, float], BeforeValidator(_window), Allowed(_WINDOW)]
     location: Annotated[Literal["normal"] | None, Allowed(_AT_NORMAL)] = None
 
@@ -288,7 +276,7 @@ class Fitted(Parameters):
         assert bins is not None
         off = max(float(np.abs(bins - end).min()) for end in self.velocity)
         if self.family not in _PARAMETERS:
-            raise ParameterError(wrong("fit.family", self.family, one_of(_PARAMETERS)))
+            raise ParameterError(wrong("fit.family", self.family, either(_PARAMETERS)))
         if off > 1e-6 * (bins[1] - bins[0]):
             raise ParameterError(wrong("fit.velocity", self.velocity, _WINDOW))
         if self.location is not None and self.family not in _CUSPED:
