@@ -22,7 +22,7 @@ import xarray as xr
 
 from restitution._internal.files import there
 from restitution.study._axes import Design
-from restitution.study._point import Point, Tell, count, evaluate, point_of
+from restitution.study._point import Point, count, evaluate, point_of
 from restitution.study._store import Store, large, small
 from restitution.study._study import Study
 from restitution.study._tables import Effort
@@ -36,17 +36,20 @@ class Stopped(Exception):
     """The study was asked to stop."""
 
 
-def run_task(path: str, point: Point, number: int, stop: threading.Event | None = None) -> bool:
+def run_task(path: str, point: Point, number: int, stop: threading.Event | None) -> bool:
     """Count a range of particles of a point and commit it; return whether that had been done already."""
     store = _open(path, point.digest)
     if there(store.file(point.number, number)):
         return True
     first = number * point.study.effort.task_batches
     batches = range(first, first + point.study.effort.task_batches)
-    tell = _teller(stop)
-    store.write(
-        point.number, first, np.stack([count(point, point.study.effort.part(b), tell) for b in batches])
-    )
+
+    def tell(_: int) -> None:
+        if stop is not None and stop.is_set():
+            raise Stopped
+
+    rows = [count(point, point.study.effort.part(batch), tell) for batch in batches]
+    store.write(point.number, first, np.stack(rows))
     return False
 
 
@@ -72,17 +75,6 @@ def _open(path: str, _: bytes) -> Store:
         ) from None
 
 
-def _teller(stop: threading.Event | None) -> Tell | None:
-    if stop is None:
-        return None
-
-    def tell(_: int) -> None:
-        if stop.is_set():
-            raise Stopped
-
-    return tell
-
-
 @dataclass
 class Progress:
     """Points and tasks, as far as they are known, those that ended, and of tasks what was found of them."""
@@ -96,12 +88,11 @@ class Progress:
 
 @dataclass
 class _Open:
-    """A point under way: its blocks of particles, and its tasks."""
+    """A point under way: its blocks of particles, and the tasks that it waits for."""
 
     point: Point
     blocks: int
     waiting: set[int] = field(default_factory=set)
-    done: set[int] = field(default_factory=set)
 
 
 @dataclass
@@ -176,19 +167,17 @@ class Driver:
                 self._begin(number)
                 continue
             opened, task = self._ready.popleft()
+            path, point, submit = str(self.store.path), opened.point, self.engine.executor.submit
             try:
-                future = self._submit(opened, task)
+                if task is None:
+                    future: Future[Any] = submit(end_point, path, point, self.study.design, opened.blocks)
+                else:
+                    future = submit(run_task, path, point, task, self.engine.event)
             except RuntimeError as error:  # no thread is to be had, or the scheduler of a client is gone
                 raise RuntimeError(f"{error}; {_CONTINUES}") from None
             self._under_way[future] = opened, task
             future.add_done_callback(self._ended.put)
         return bool(self._under_way)
-
-    def _submit(self, opened: _Open, task: int | None) -> "Future[Any]":
-        path, point, design = str(self.store.path), opened.point, self.study.design
-        if task is not None:
-            return self.engine.submit(run_task, path, point, task, stoppable=True)
-        return self.engine.submit(end_point, path, point, design, opened.blocks)
 
     def _begin(self, number: int) -> None:
         finished = self.table.finished(number, self.study.effort)
@@ -200,19 +189,16 @@ class Driver:
             self.progress.resumed += len(tasks)
             self.progress.ended += 1
         else:
-            self._need(_Open(point_of(self.study, number, self.template), blocks), there)
+            self._need(_Open(point_of(self.study, number, self.template), blocks), tasks, there)
 
-    def _need(self, opened: _Open, there: set[int]) -> None:
-        """Submit the tasks that a point lacks, or end the point if it lacks none."""
-        needed = set(range(opened.blocks * self.study.effort.block_tasks))
-        self.progress.resumed += len((needed & there) - opened.done)
-        opened.done |= needed & there
-        lacking = needed - opened.done
-        if not lacking:
+    def _need(self, opened: _Open, tasks: range, there: set[int]) -> None:
+        """Submit those of these tasks of a point that are not there, or end the point if all are."""
+        opened.waiting = set(tasks) - there
+        self.progress.resumed += len(tasks) - len(opened.waiting)
+        if not opened.waiting:
             self._ready.appendleft((opened, None))
         elif self.compute:
-            opened.waiting = lacking
-            self._ready.extendleft((opened, task) for task in sorted(lacking, reverse=True))
+            self._ready.extendleft((opened, task) for task in sorted(opened.waiting, reverse=True))
 
     def _take(self, opened: _Open, task: int | None, future: "Future[Any]") -> None:
         """Store the result of a worker."""
@@ -226,20 +212,20 @@ class Driver:
             self._end(opened, result)
         else:
             opened.waiting.discard(task)
-            opened.done.add(task)
             self.progress.resumed += result
             self.progress.computed += not result
             if not opened.waiting:
-                self._need(opened, set())
+                self._ready.appendleft((opened, None))
         if self.tell is not None:
             self.tell(self.progress)
 
     def _end(self, opened: _Open, found: xr.Dataset | None) -> None:
         number = opened.point.number
         if found is None:
-            self.progress.tasks += opened.blocks * self.study.effort.block_tasks
+            done = opened.blocks * self.study.effort.block_tasks
+            self.progress.tasks += done
             opened.blocks *= 2
-            self._need(opened, self.store.there(number))
+            self._need(opened, range(done, 2 * done), self.store.there(number))
         else:
             self.progress.ended += 1
             self.table.set(number, found)

@@ -35,13 +35,8 @@ class Status:
 
     Examples
     --------
-    >>> import tempfile
     >>> import restitution as rs
-    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9)
-    >>> study = {"body": body, "law": law, "sweep": {"law.normal": [0.8, 0.9]}, "first_impact": {}}
-    >>> out = tempfile.mkdtemp() + "/study.zarr"
-    >>> found = rs.sweep(study, out=out)
-    >>> print(rs.study.status(out))
+    >>> print(rs.study.Status(points=2, finished=2, tasks=2, there=2))  # as `status` finds it
     2 of 2 points are finished (100 %), and 2 of 2 tasks are done.
     """
 

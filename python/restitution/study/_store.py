@@ -252,11 +252,11 @@ class Store:
     def read_small(self, design: Design) -> dict[str, npt.NDArray[Any]]:
         """Read the smaller variables of all points."""
         with readable(self.path):
-            own, other = len(design.shape), {*self.large_arrays(design), *(axis.name for axis in design.axes)}
+            own, axes = len(design.shape), {axis.name for axis in design.axes}
             return {
                 name: self._values(name).reshape(design.points, *array.shape[own:])
                 for name, array in self._by_point(design)
-                if name not in other
+                if name not in axes and math.prod(array.shape[own:]) < _LARGE
             }
 
     def write_small(self, values: Mapping[str, npt.NDArray[Any]]) -> None:
@@ -266,12 +266,6 @@ class Store:
                 array = self._array(name)
                 array[...] = values[name].reshape(array.shape)
             self.consolidate()
-
-    def large_arrays(self, design: Design) -> list[str]:
-        """Name the arrays that have a chunk for each point."""
-        with readable(self.path):
-            own = len(design.shape)
-            return [name for name, array in self._by_point(design) if math.prod(array.shape[own:]) >= _LARGE]
 
     def _by_point(self, design: Design) -> Iterator[tuple[str, Any]]:
         """Return the arrays that have a value for each point; other files in the folder are ignored."""

@@ -2,7 +2,7 @@
 
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Any
@@ -14,10 +14,7 @@ from restitution._internal.resources import checked_threads
 
 @dataclass(frozen=True)
 class Engine:
-    """Takes calls and gives futures.
-
-    The width is the number of calls that run at a time, now; the event asks running calls to stop.
-    """
+    """An executor; how many calls it runs at a time, now; and the event, if any, that asks them to stop."""
 
     executor: Executor
     width: Callable[[], int]
@@ -27,11 +24,6 @@ class Engine:
     def room(self) -> int:
         """Return how many calls should be under way: enough for no worker to wait for the next one."""
         return 2 * max(1, self.width()) + 2
-
-    def submit(self, function: Callable[..., Any], *arguments: Any, stoppable: bool = False) -> "Future[Any]":
-        """Submit a call of a function."""
-        more = (self.event,) if stoppable and self.event is not None else ()
-        return self.executor.submit(function, *arguments, *more)
 
     def stop(self) -> None:
         """Ask running calls to stop."""
