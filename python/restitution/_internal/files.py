@@ -20,18 +20,29 @@ from restitution._internal.parameters import ParameterError, wrong
 MOST = 2**28  # bytes of a file that is read as a whole: far above tables of times and parameters of runs
 _LONGEST = 50  # letters of a name that a draft's contains: most file systems allow 255 bytes in all
 
-# What the package writes under names that are given, in the words of an error, and how such names end.
-NETCDF, ZARR, HEADER, MODULE, IMAGE, FILM, TABLE, LATEX, FOLDER = _OWN = {
-    "a netCDF file, such as run.nc": ".nc .nc3 .nc4 .netcdf .cdf .h5 .hdf5",
-    "a Zarr store, such as study.zarr": ".zarr",
-    "a header of C and C++, such as dist.h": ".h .hh .hpp .hxx",
-    "a Fortran source, such as dist.f90": ".f90 .f95 .f03 .f08",
-    "a figure, which is written as .png, .pdf or .svg": ".png .pdf .svg",
-    "a film, which is written as .gif or .mp4": ".gif .mp4",
-    "a table, which is written as .csv or .parquet": ".csv .parquet",
-    "a LaTeX source, such as fit.tex": ".tex",
-    "a folder": "",
+# What the package writes under names that are given, in the words of an error.
+NETCDF = "a netCDF file, such as run.nc"
+ZARR = "a Zarr store, such as study.zarr"
+HEADER = "a header of C and C++, such as dist.h"
+MODULE = "a Fortran source, such as dist.f90"
+IMAGE = "a figure, which is written as .png, .pdf or .svg"
+FILM = "a film, which is written as .gif or .mp4"
+TABLE = "a table, which is written as .csv or .parquet"
+LATEX = "a LaTeX source, such as fit.tex"
+FOLDER = "a folder"
+
+_OWN = {
+    NETCDF: ".nc .nc3 .nc4 .netcdf .cdf .h5 .hdf5",
+    ZARR: ".zarr",
+    HEADER: ".h .hh .hpp .hxx",
+    MODULE: ".f90 .f95 .f03 .f08",
+    IMAGE: ".png .pdf .svg",
+    FILM: ".gif .mp4",
+    TABLE: ".csv .parquet",
+    LATEX: ".tex",
+    FOLDER: "",
 }
+"""How such names end."""
 _OTHERS = (
     ".c .cc .cpp .f .for .py .rs .jl .m .r .ipynb .tsv .txt .md .html .htm .json .toml .yaml .yml "
     ".xml .xls .xlsx .ods .npy .npz .mat .pkl .pickle .jpg .jpeg .tif .tiff .bmp .eps .ps "
@@ -73,9 +84,10 @@ def content(path: Path) -> bytes:
 def check_regular(path: Path) -> None:
     """Refuse folders, pipes and devices for libraries that go back and forth in a file, or wait for ever."""
     path.stat()  # whose OSError names what is not there
+    if path.is_dir():
+        raise OSError(errno.EISDIR, "is a folder", str(path))
     if not path.is_file():
-        folder, other = (errno.EISDIR, "is a folder"), (errno.EINVAL, "not a regular file: save it first")
-        raise OSError(*(folder if path.is_dir() else other), str(path))
+        raise OSError(errno.EINVAL, "not a regular file: save it first", str(path))
 
 
 def there(path: Path) -> bool:
@@ -119,7 +131,7 @@ def whole_file(path: Path, *, replace: bool = False) -> Iterator[Path]:
     try:
         yield draft
         _flush(draft)
-        (os.replace if replace else claim)(draft, target)
+        _place(draft, target, replace=replace)
     except OSError as error:
         _raise_named(error, draft, path)
     finally:
@@ -159,7 +171,7 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
             _flush(file)
         if there(target):
             for file in files:
-                (os.replace if replace else claim)(file, target / file.name)
+                _place(file, target / file.name, replace=replace)
         else:
             target.parent.mkdir(parents=True, exist_ok=True)
             os.rename(draft, target)
@@ -181,11 +193,17 @@ def _remove_old_drafts(folder: Path, name: str) -> None:
     for draft in list(folder.glob(f".{glob.escape(name[:_LONGEST])}.*.part")):
         with suppress(OSError):
             if time.time() - draft.stat().st_mtime > 86_400.0:  # nobody writes for a day
-                shutil.rmtree(draft) if draft.is_dir() else draft.unlink()
+                if draft.is_dir():
+                    shutil.rmtree(draft)
+                else:
+                    draft.unlink()
 
 
-def claim(draft: Path, target: Path) -> None:
-    """Move a draft to a place that nothing has taken; raises a FileExistsError."""
+def _place(draft: Path, target: Path, *, replace: bool) -> None:
+    """Move a draft to its place; a FileExistsError where something has taken it that may not be replaced."""
+    if replace:
+        os.replace(draft, target)
+        return
     try:
         try:
             os.link(draft, target)
@@ -225,9 +243,10 @@ def _target(path: Path, replace: bool, taken: str = "exists already") -> Path:
 
 def _raise_named(error: OSError, draft: Path, path: Path) -> NoReturn:
     """Raise an error of the system by the name that was given, where it has none or that of the draft."""
+    if error.errno is None and type(error) is not OSError:  # what a signal may raise
+        raise error
     name = Path(error.filename or draft)
-    ours_to_name = error.errno is not None or type(error) is OSError  # and not what a signal may raise
-    for ours in (draft, Path(os.path.realpath(path))) if ours_to_name else ():
+    for ours in (draft, Path(os.path.realpath(path))):
         if name.is_relative_to(ours):
             given = path / name.relative_to(ours)
             raise OSError(error.errno, error.strerror or str(error), str(given)) from error
