@@ -46,10 +46,13 @@ pub(crate) fn bounce_block(
     sink: &mut impl ImpactSink,
 ) -> Result<(), Error> {
     let count = particles.len() as u64;
-    // A law of one's own may take long: the fewer contacts it is asked about at a time, the sooner a run that is cancelled ends.
-    let level = match runs.plan().law.custom {
-        Some(_) => Level::Scalar,
-        None => level,
+    let plan = runs.plan();
+    let level = match (&plan.run.body, level) {
+        // A law of one's own may take long: the fewer contacts it is asked about at a time, the sooner a run that is cancelled ends.
+        _ if plan.law.custom.is_some() => Level::Scalar,
+        // Numbers by themselves are followed faster without the masks of AVX-512.
+        (AnyBody::Rigid(_), Level::Avx512) => Level::Avx2,
+        _ => level,
     };
     let ended = level.run(Block {
         runs,
