@@ -24,7 +24,7 @@
 use super::certify::INVISIBLE;
 use super::plane::GapExpansion;
 use crate::math::Vector;
-use crate::motion::{BodyFrame, BodyPose, SpinBounds, Turn};
+use crate::motion::{BodyFrame, BodyPose, FlightRotation, SpinBounds};
 use crate::shape::{Feature, Piece, PieceKind, Round, Top};
 
 /// Most steps of a search.
@@ -41,7 +41,7 @@ const UP: Vector = Vector::new(0.0, 0.0, 1.0);
 pub(crate) struct PairFlight {
     pub apart: Vector,
     pub velocity: Vector,
-    pub turns: [Turn; 2],
+    pub turns: [FlightRotation; 2],
 }
 
 /// The parts of two bodies, and a length to which what rounding leaves is small.
@@ -714,11 +714,11 @@ fn height(piece: &Piece, (u, change): (Vector, Vector), s: f64, normal: f64) -> 
 
 /// Bounds of the velocity of the points of a part without its ball, and of their acceleration along a normal **n** + s**n**′ with |**n**′| = `speed`.
 #[inline(always)]
-fn swings(piece: &Piece, turn: &Turn, n: Vector, speed: f64) -> [f64; 2] {
+fn swings(piece: &Piece, turn: &FlightRotation, n: Vector, speed: f64) -> [f64; 2] {
     let longer = if speed > 0.0 { 2.0_f64.sqrt() } else { 1.0 };
     let about = match turn {
-        Turn::Axis(_, _, about) => about,
-        Turn::Any(_, SpinBounds { fastest, whole, .. }) => {
+        FlightRotation::Axis(_, _, about) => about,
+        FlightRotation::Any(_, SpinBounds { fastest, whole, .. }) => {
             return [fastest * piece.reach, longer * whole * piece.reach];
         }
     };

@@ -2,13 +2,14 @@
 
 mod bounds;
 mod elliptic;
+mod flight_rotation;
 mod rotation;
 mod series;
 mod symmetric;
 mod top;
-mod turn;
 
 pub use bounds::SpinBounds;
+pub(crate) use flight_rotation::{BodyFrame, BodyPose, FlightRotation};
 pub use rotation::Rotation;
 pub(crate) use rotation::Rotations;
 pub use symmetric::State;
@@ -16,4 +17,3 @@ pub(crate) use symmetric::{
     Attitude, Flight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion, SpatialState,
     SymmetricState,
 };
-pub(crate) use turn::{BodyFrame, BodyPose, Turn};

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::contact::PairFlight;
 use crate::law::Compliance;
 use crate::math::{Quaternion, Symmetric, Vector};
-use crate::motion::{BodyPose, Rotation, Turn};
+use crate::motion::{BodyPose, FlightRotation, Rotation};
 use crate::shape::{AnyBody, Piece, PieceKind, Top};
 
 /// A body of an encounter, or a plane at rest, the body of infinite mass. Units are coherent, such as SI units.
@@ -223,8 +223,8 @@ impl FreeBody {
     }
 
     #[inline(always)]
-    fn rotation(&self, body: &Partner) -> Turn {
-        Turn::new(&body.top, body.axis, self.attitude, self.spin)
+    fn rotation(&self, body: &Partner) -> FlightRotation {
+        FlightRotation::new(&body.top, body.axis, self.attitude, self.spin)
     }
 
     #[inline(always)]

@@ -14,7 +14,7 @@ use crate::simd::elementary::sincos;
     clippy::large_enum_variant,
     reason = "two live at a time, on the stack"
 )]
-pub(crate) enum Turn {
+pub(crate) enum FlightRotation {
     /// About the axis of this number: the part of it along **Λ**, that across and **Λ** × **e**/|Λ|.
     Axis(usize, [Vector; 3], Precession),
     /// Any, with the bounds on it.
@@ -61,7 +61,7 @@ impl Top {
     }
 }
 
-impl Turn {
+impl FlightRotation {
     /// The rotation from this attitude with this ω in the axes of the body, which is one of revolution about a principal axis that precesses, if
     /// that is given.
     #[inline(always)]
