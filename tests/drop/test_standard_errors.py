@@ -16,32 +16,30 @@ from restitution.drop.reduce import reduce, standard_errors
 
 
 def test_one_impact_a_particle_gives_the_textbook_error() -> None:
-    """With clusters of one, the variance is a mean of squares; its error s/√n over 2σ is that of σ."""
+    """With clusters of one, the standard error of the mean is s/√n."""
     values = np.random.default_rng(1).normal(size=(50, 1))
     found = standard_errors(impacts(np.full((50, 1), 0.1), values), [0.0, 1.0])
-    squares = (values - values.mean()) ** 2
-    expected = squares.std(ddof=1) / np.sqrt(50) / (2 * values.std())
-    assert float(found["deviation_standard_error"][0]) == pytest.approx(expected, rel=1e-13)
+    expected = values.std(ddof=1) / np.sqrt(50)
+    assert float(found["mean_standard_error"][0]) == pytest.approx(expected, rel=1e-13)
 
 
-def test_copies_of_an_impact_add_no_information(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_copies_of_an_impact_add_no_information() -> None:
     """A particle that repeats its impact three times counts once; blocks change nothing but the rounding."""
     values = np.random.default_rng(2).normal(size=(40, 1))
     once = standard_errors(impacts(np.full((40, 1), 0.1), values), [0.0, 1.0])
-    monkeypatch.setattr("restitution.drop.reduce._BLOCK", 7)
-    thrice = standard_errors(impacts(np.full((40, 3), 0.1), np.tile(values, 3)), [0.0, 1.0])
-    errors = [float(found["deviation_standard_error"][0]) for found in (once, thrice)]
-    assert errors[1] == pytest.approx(errors[0], rel=1e-12)
+    thrice = standard_errors(impacts(np.full((40, 3), 0.1), np.tile(values, 3)), [0.0, 1.0], block=7)
+    for name in ("mean_standard_error", "variance_standard_error", "deviation_standard_error"):
+        assert float(thrice[name][0]) == pytest.approx(float(once[name][0]), rel=1e-12)
 
 
 def test_single_particle_has_no_standard_error() -> None:
     """One cluster says nothing of the spread of clusters."""
     found = standard_errors(impacts([[0.1, 0.1]], [[0.5, 0.7]]), [0.0, 1.0, 2.0])
-    assert np.isnan(found["deviation_standard_error"]).all()
+    assert np.isnan(found["mean_standard_error"]).all()
     np.testing.assert_array_equal(found["particles"], [1, 0])
 
 
-def test_standard_errors_of_clusters_in_several_bins(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_standard_errors_of_clusters_in_several_bins() -> None:
     """√(m/(m-1) Σ_i Ψ_i²)/number by loops, whatever the blocks, without what has no number or bin."""
     random = np.random.default_rng(6)
     shape = (11, 9)
@@ -52,32 +50,34 @@ def test_standard_errors_of_clusters_in_several_bins(monkeypatch: pytest.MonkeyP
     fraction[5, 0] = np.nan
     edges = [0.0, 0.5, 2.0]
     data = impacts(velocity, values, fraction)
-    blocks = []
-    for block in (1, 4, 11, 100):
-        monkeypatch.setattr("restitution.drop.reduce._BLOCK", block)
-        blocks.append(standard_errors(data, edges))
+    blocks = [standard_errors(data, edges, block=block) for block in (1, 4, 11, 100)]
     for k, (low, high) in enumerate(pairwise(edges)):
         good = (velocity >= low) & (velocity < high) & (np.abs(values) < 2.0**33) & np.isfinite(fraction)
         pooled = values[good]
         mean, variance = pooled.mean(), pooled.var()
         clusters = [row[kept] for row, kept in zip(values, good, strict=True) if kept.any()]
         m = len(clusters)
-        sums = np.array([((row - mean) ** 2 - variance).sum() for row in clusters])
-        deviation = np.sqrt(m / (m - 1) * np.sum(sums**2)) / pooled.size / (2 * np.sqrt(variance))
+        sums = np.array([[(row - mean).sum(), ((row - mean) ** 2 - variance).sum()] for row in clusters])
+        for_mean, for_variance = np.sqrt(m / (m - 1) * np.sum(sums**2, axis=0)) / pooled.size
         for found in blocks:
             assert int(found["particles"][k]) == m
+            assert float(found["mean_standard_error"][k]) == pytest.approx(for_mean, rel=1e-12)
+            assert float(found["variance_standard_error"][k]) == pytest.approx(for_variance, rel=1e-12)
+            deviation = for_variance / (2 * np.sqrt(variance))
             assert float(found["deviation_standard_error"][k]) == pytest.approx(deviation, rel=1e-12)
     for found in blocks:
         assert found["velocity"].values.tolist() == [0.25, 1.25]
         assert found["velocity"].dims == ("velocity",)
         assert found["velocity"].attrs["units"] == "m s-1"
         assert found.attrs == data.attrs
-        assert "deviation of restitution" in found["deviation_standard_error"].attrs["long_name"]
+        for name in ("mean", "variance", "deviation"):
+            assert f"{name} of restitution" in found[f"{name}_standard_error"].attrs["long_name"]
         assert found["particles"].attrs["long_name"]
 
 
 def test_equal_values_have_no_error_of_their_deviation() -> None:
     found = standard_errors(impacts(np.full((5, 2), 0.1), np.full((5, 2), 0.5)), [0.0, 1.0])
+    assert float(found["mean_standard_error"][0]) == float(found["variance_standard_error"][0]) == 0.0
     assert np.isnan(found["deviation_standard_error"][0])
 
 
@@ -156,9 +156,7 @@ def scatter_over_error(estimates: npt.NDArray[np.float64], errors: npt.NDArray[n
 
 
 def test_standard_errors_match_repetition_of_correlated_samples() -> None:
-    """Particles that differ from each other: 400 repetitions scatter as the errors say.
-
-    Mean and variance as those of batches, the standard deviation as that of clusters.
+    """Particles that differ from each other: 400 repetitions scatter as the errors say, mean and variance.
 
     The ratio of 400 repetitions has a standard deviation of 0.035 (by bootstrap); ± 0.2 is five of
     these (1 in 10⁶) and 0.02 for the bias of 60 clusters. Errors for independent impacts would be four
@@ -170,15 +168,12 @@ def test_standard_errors_match_repetition_of_correlated_samples() -> None:
     for _ in range(400):
         values = random.normal(size=(60, 1)) + 0.25 * random.normal(size=shape)
         data = impacts(np.full(shape, 0.1), values)
-        errors = reduce(data, [0.0, 1.0], [0.0, 1.0], batches=30)
-        clusters = standard_errors(data, [0.0, 1.0])
-        names = ("mean_restitution_error", "variance_error", "deviation_standard_error")
-        both = {**errors.variables, **clusters.variables}
-        found.append([values.mean(), values.var(), *(float(both[name][0]) for name in names)])
-    mean, variance, mean_error, variance_error, deviation_error = np.array(found).T
+        errors = standard_errors(data, [0.0, 1.0])
+        names = ("mean_standard_error", "variance_standard_error")
+        found.append([values.mean(), values.var(), *(float(errors[name][0]) for name in names)])
+    mean, variance, mean_error, variance_error = np.array(found).T
     assert scatter_over_error(mean, mean_error) == pytest.approx(1, abs=0.2)
     assert scatter_over_error(variance, variance_error) == pytest.approx(1, abs=0.2)
-    assert scatter_over_error(np.sqrt(variance), deviation_error) == pytest.approx(1, abs=0.2)
     independent = np.sqrt(variance / values.size)
     assert scatter_over_error(mean, independent) > 3
 
@@ -194,11 +189,13 @@ def test_standard_errors_match_repeated_simulations() -> None:
     for seed in range(150):
         data = rs.simulate(body, law, particles=60, impacts=100, seed=seed)
         moments = reduce(data, bins, [0.0, 1.0])
-        error = standard_errors(data, bins)["deviation_standard_error"]
+        errors = standard_errors(data, bins)
         deviation = float(moments["variance"][0]) ** 0.5
-        means = (float(moments[name][0]) for name in ("mean_restitution", "mean_restitution_error"))
-        found.append([*means, deviation, float(error[0])])
-    mean, mean_error, deviations, deviation_error = np.array(found).T
+        names = ("mean_standard_error", "deviation_standard_error")
+        found.append(
+            [float(moments["mean_restitution"][0]), deviation, *(float(errors[name][0]) for name in names)]
+        )
+    mean, deviations, mean_error, deviation_error = np.array(found).T
     assert scatter_over_error(mean, mean_error) == pytest.approx(1, abs=0.33)
     assert scatter_over_error(deviations, deviation_error) == pytest.approx(1, abs=0.33)
 
@@ -260,6 +257,7 @@ def test_standard_errors_of_clusters_lie_along_the_velocity() -> None:
         "fraction_bins": lambda: reduce(impacts(0.1, 0.5), [0.0, 1.0], [0.0, 1.0], [1.0, 0.0]),
         "velocity_bins": lambda: standard_errors(impacts(0.1, 0.5), [1.0, 0.0]),
         "data": lambda: standard_errors(impacts(0.1, 0.5).drop_vars("restitution"), [0.0, 1.0]),
+        "block = 0": lambda: standard_errors(impacts(0.1, 0.5), [0.0, 1.0], block=0),
         "data lacks": lambda: reduce(impacts(0.1, 0.5).drop_vars("restitution"), [0.0, 1.0], [0.0, 1.0]),
         "velocity_bins goes": lambda: reduce(impacts(0.1, 0.5), [1.0, 0.0], [0.0, 1.0]),
         "data = 5": lambda: reduce(cast(Any, 5), [0.0, 1.0], [0.0, 1.0]),

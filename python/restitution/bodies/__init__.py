@@ -20,6 +20,7 @@ from restitution.bodies._rigid import RigidBody as RigidBody
 from restitution.bodies._rigid import directions as directions
 from restitution.bodies._rough import Rough, RoughSphere
 from restitution.bodies._roundness import GRADES as GRADES
+from restitution.bodies._roundness import ROUGHNESS as ROUGHNESS
 from restitution.bodies._roundness import Form as Form
 from restitution.bodies._roundness import ball_grade, ball_roughness, from_roundness
 from restitution.bodies._spherocylinder import Spherocylinder

@@ -30,7 +30,7 @@ class ConvexPolyhedron(FromRows):
     """
 
     by_place: ClassVar[tuple[str, ...]] = ("points",)
-    columns: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    _columns: ClassVar[tuple[str, ...]] = ("x", "y", "z")
 
     points: Annotated[Any, Allowed(_POINTS), rows(_POINTS, 3, 4), Field(description="m")]
     density: Density = 2500.0

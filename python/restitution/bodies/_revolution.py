@@ -37,7 +37,7 @@ class Revolution(FromRows, Turned):
     """
 
     by_place: ClassVar[tuple[str, ...]] = ("profile",)
-    columns: ClassVar[tuple[str, ...]] = ("z", "r")
+    _columns: ClassVar[tuple[str, ...]] = ("z", "r")
 
     profile: Annotated[
         Any,

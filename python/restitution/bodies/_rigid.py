@@ -227,9 +227,8 @@ class FromFile(Matter):
         Parameters
         ----------
         path : str or path-like
-            Of points or a profile a text file with a row a line, numbers with spaces or commas between them;
-            ``#`` begins a comment. Of a mesh an STL, OBJ or PLY file: vertices at the same place are one;
-            what else is in it, such as colours, is not read.
+            Of points or a profile a text file, numbers with spaces or commas between them, ``#`` before a
+            comment; of a mesh STL, OBJ or PLY, in which vertices at the same place are one.
         scale : float, default 1
             What a unit of the file is in m: 1e-3 for millimetres. > 0.
         density, inertia, centre
@@ -238,9 +237,7 @@ class FromFile(Matter):
         Raises
         ------
         ValueError
-            If the file is none of these, a row malformed, or a surface not closed or not oriented; the
-            message says where. Or if trimesh, which reads meshes, is not installed: ``pip install
-            'restitution[mesh]'``.
+            For another file, a malformed row or an open surface, or without trimesh (``restitution[mesh]``).
         OSError
             If the file cannot be read.
         """
@@ -255,12 +252,12 @@ class FromFile(Matter):
 class FromRows(FromFile):
     """A body whose first parameter is a table of places in m."""
 
-    columns: ClassVar[tuple[str, ...]]
+    _columns: ClassVar[tuple[str, ...]]
     density: Density = 2500.0
 
     @classmethod
     def _shape(cls, place: Path, scale: float) -> dict[str, Any]:
-        return {cls.by_place[0]: scale * np.array(rows_in(place, cls.columns))}
+        return {cls.by_place[0]: scale * np.array(rows_in(place, cls._columns))}
 
 
 def plain(value: Any) -> Any:

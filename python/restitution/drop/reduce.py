@@ -32,9 +32,6 @@ from restitution.drop.bins import (
 from restitution.drop.energy import LEDGER, by_row, ledger_of
 from restitution.drop.recorded import records
 
-_BLOCK = 1024
-"""Particles whose sums are held at a time."""
-
 
 def reduce(
     data: xr.Dataset,
@@ -147,14 +144,14 @@ def reduce(
     return found.assign_attrs(about, content=content, standard_errors=how)
 
 
-def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike) -> xr.Dataset:
-    """Return cluster-robust standard errors of the standard deviation of restitution in each velocity bin.
+def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: int = 1024) -> xr.Dataset:
+    """Return cluster-robust standard errors of the mean and variance of restitution in each velocity bin.
 
     Impacts of one particle are correlated, those of different particles are not, so each particle is one
-    draw. The errors are linearised: with ψ = (ε − mean)² − variance the influence of one impact and Ψ_i its
-    sum over the impacts of particle i in the bin, the standard error of the variance is √(m/(m−1) Σ_i
-    Ψ_i²)/number, m being the number of particles with an impact in the bin, and that of the standard
-    deviation σ is this over 2σ.
+    draw. The errors are linearised: with ψ the influence of one impact (ε − mean, or (ε − mean)² −
+    variance) and Ψ_i its sum over the impacts of particle i in the bin, the standard error is √(m/(m−1)
+    Σ_i Ψ_i²)/number, m being the number of particles with an impact in the bin. That of the standard
+    deviation σ is that of the variance over 2σ.
 
     Parameters
     ----------
@@ -162,15 +159,19 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike) -> xr.Datase
         Impacts as from `restitution.simulate`, dimensions (particle, impact).
     velocity_bins : array_like, shape (nv + 1,)
         As in `reduce`.
+    block : int, default 1024
+        Particles taken at a time; bounds the memory and changes nothing else but the rounding.
 
     Returns
     -------
     xarray.Dataset
-        In each velocity bin ``deviation_standard_error``, NaN where fewer than two particles contribute or
-        the variance is 0, and ``particles`` (m).
+        In each velocity bin ``mean_standard_error``, ``variance_standard_error``,
+        ``deviation_standard_error`` (NaN where fewer than two particles contribute; the last also where
+        the variance is 0) and ``particles`` (m).
     """
     edges = increasing_edges(velocity_bins, "velocity_bins")
     nv = edges.size - 1
+    block = whole("block", block, 1)
     names = ("impact_velocity", "restitution", "rotational_fraction")
     velocity, restitution, fraction = records("data", data, *names)
     bins = _bin(velocity, edges)
@@ -181,25 +182,31 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike) -> xr.Datase
     number = _counts(bins[kept], nv)
 
     particles = np.zeros(nv, np.int64)
-    squares = np.zeros(nv)
-    for start in range(0, velocity.shape[0], _BLOCK):
-        chosen = kept[start : start + _BLOCK]
-        b = bins[start : start + _BLOCK][chosen]
-        deviation = restitution[start : start + _BLOCK][chosen] - mean[b]
+    squares = np.zeros((2, nv))
+    for start in range(0, velocity.shape[0], block):
+        chosen = kept[start : start + block]
+        b = bins[start : start + block][chosen]
+        deviation = restitution[start : start + block][chosen] - mean[b]
         cell = np.nonzero(chosen)[0] * nv + b
         shape = (chosen.shape[0], nv)
         particles += np.count_nonzero(_counts(cell, shape[0] * nv).reshape(shape), axis=0)
-        influence = deviation**2 - variance[b]
-        sums = np.bincount(cell, weights=influence, minlength=shape[0] * nv).reshape(shape)
-        squares += np.sum(sums**2, axis=0)
+        for k, influence in enumerate((deviation, deviation**2 - variance[b])):
+            sums = np.bincount(cell, weights=influence, minlength=shape[0] * nv).reshape(shape)
+            squares[k] += np.sum(sums**2, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         correction = np.where(particles > 1, particles / (particles - 1.0), np.nan)
-        of_variance = np.sqrt(correction * squares) / number
-        error = np.where(variance > 0, of_variance / (2 * np.sqrt(variance)), np.nan)
-    text = "cluster-robust standard error of the standard deviation of restitution; a particle is a cluster"
+        errors = np.sqrt(correction * squares) / number
+        deviation_error = np.where(variance > 0, errors[1] / (2 * np.sqrt(variance)), np.nan)
+    text = "cluster-robust standard error of the {} of restitution; a particle is a cluster"
     return xr.Dataset(
         {
-            "deviation_standard_error": ("velocity", error, {"long_name": text}),
+            "mean_standard_error": ("velocity", errors[0], {"long_name": text.format("mean")}),
+            "variance_standard_error": ("velocity", errors[1], {"long_name": text.format("variance")}),
+            "deviation_standard_error": (
+                "velocity",
+                deviation_error,
+                {"long_name": text.format("standard deviation")},
+            ),
             "particles": ("velocity", particles, {"long_name": "particles with an impact in the bin"}),
         },
         coords={"velocity": ("velocity", centres(edges), {"units": "m s-1", "long_name": "impact velocity"})},

@@ -2,8 +2,9 @@
 
 mod column;
 mod variable;
+mod variables;
 
 pub use column::{Columns, Values};
 pub(crate) use column::{InLanes, Slices, Stored, TableColumns, TableRows};
-pub(crate) use variable::variables;
 pub use variable::{Element, Elements, Variable, When};
+pub(crate) use variables::variables;
