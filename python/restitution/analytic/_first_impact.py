@@ -6,6 +6,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from restitution._internal.arrays import word
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.analytic._branched import BranchedFirstImpact
 from restitution.analytic._frozen import FirstImpact, check
@@ -92,8 +93,7 @@ def first_impact(
     check(body, law)
     orientation = _oriented(body, orientation)
     fall = _fall(body, law, release_height, gravity)
-    if not isinstance(surface, str) or surface not in get_args(Surface):
-        raise ParameterError(wrong("surface", surface, " or ".join(map(repr, get_args(Surface)))))
+    word("surface", surface, get_args(Surface))
     if isinstance(body, RoughSphere) and surface == "any":
         return _wide_enough(RoughFirstImpact(body, law, "isotropic", fall))
     if isinstance(body, Turned):
@@ -125,8 +125,7 @@ def _oriented(body: Body | RigidBody, orientation: OrientationName | None) -> Or
     """Choose the orientation as `simulate` does, unless one is given."""
     if orientation is None:
         return "uniform-angle" if isinstance(body, Body) else "isotropic"
-    if not (isinstance(orientation, str) and orientation in ORIENTATIONS):
-        raise ParameterError(wrong("orientation", orientation, " or ".join(map(repr, ORIENTATIONS))))
+    word("orientation", orientation, ORIENTATIONS)
     if orientation != "isotropic" and not isinstance(body, Body | RoughSphere):
         raise ParameterError(wrong("orientation", orientation, "'isotropic', for a rigid body of any shape"))
     return orientation

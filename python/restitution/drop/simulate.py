@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, TypeAlias, Unpack, get_args
 
 from restitution import _core
+from restitution._internal.arrays import either, word
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_size, checked_threads, progress_bar
 from restitution.bodies import AnyBody
@@ -144,16 +145,14 @@ def simulate(
 
 def checked_record(record: object) -> Record:
     """Refuse what is neither "impacts" nor "state"."""
-    if isinstance(record, str) and record in get_args(Record):
-        return "state" if record == "state" else "impacts"
-    raise ParameterError(wrong("record", record, " or ".join(map(repr, get_args(Record)))))
+    return "state" if word("record", record, get_args(Record)) == "state" else "impacts"
 
 
 def checked_until(until: object) -> bool:
     """Return whether particles end where they have settled."""
     if until is None or (isinstance(until, str) and until in get_args(Until)):
         return until is not None
-    raise ParameterError(wrong("until", until, f"{' or '.join(map(repr, get_args(Until)))}, or left out"))
+    raise ParameterError(wrong("until", until, f"{either(get_args(Until))}, or left out"))
 
 
 def simulate_run(

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from restitution._internal.arrays import FARTHEST, FloatArray, reals, whole
+from restitution._internal.arrays import FARTHEST, FloatArray, reals, whole, word
 from restitution._internal.parameters import ParameterError, Problem, renamed, wrong
 from restitution.drop.recorded import (
     check_filled,
@@ -83,8 +83,7 @@ def map(
     ...     velocity_bins=np.linspace(0.0, 1.2, 121), restitution_bins=np.linspace(0.5, 1.5, 101))
     >>> figure = rs.figures.map(found)
     """
-    if not isinstance(of, str) or of not in ("restitution", "fraction"):
-        raise ParameterError(wrong("of", of, "'restitution' or 'fraction'"))
+    word("of", of, ("restitution", "fraction"))
     found = counted("found", found, (f"{of}_count", "velocity_edges", f"{of}_edges"))
     if not found[f"{of}_count"].any():
         raise ParameterError(Problem(f"found.{of}_count", ": every bin is empty; must hold an impact"))

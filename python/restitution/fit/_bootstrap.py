@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from restitution._internal.arrays import generator, real, whole
+from restitution._internal.arrays import generator, real, whole, word
 from restitution._internal.datasets import Content
-from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.text import table, value, with_error
 from restitution.fit._clusters import MOST_RESAMPLES, clustered, fitted_by, refitted, specified
 from restitution.fit._counts import Counts
@@ -78,8 +77,7 @@ class Bootstrap(Content):
 
     def draws(self, name: str) -> Array:
         """Return a parameter of all resampled fits, shape (resamples,)."""
-        if not isinstance(name, str) or name not in self.fit.parameters:
-            raise ParameterError(wrong("name", name, " or ".join(map(repr, self.fit.parameters))))
+        word("name", name, self.fit.parameters)
         return np.array([one.parameters[name] for one in self.resampled])
 
     def interval(self, name: str, confidence: float = 0.95) -> tuple[float, float]:

@@ -9,9 +9,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from restitution._internal.arrays import generator, real, whole
+from restitution._internal.arrays import generator, real, whole, word
 from restitution._internal.datasets import Content
-from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_size
 from restitution.drop.bins import LARGEST, centres, increasing_edges
 from restitution.drop.recorded import LATTICE, check_filled, counted, records
@@ -122,8 +121,7 @@ class Slopes(Content):
             If there is no such side, fewer than three bins have a fit there, or ``release_speed`` is not
             above them.
         """
-        if not isinstance(side, str) or side not in _SIDES:
-            raise ParameterError(wrong("side", side, "'above' or 'below'"))
+        word("side", side, _SIDES)
         speed = "a speed in m/s"
         low, high = (
             real(name, given, speed, lambda v: not isnan(v), unit="m s-1")

@@ -9,7 +9,7 @@ from typing import Literal, get_args
 import numpy as np
 import xarray as xr
 
-from restitution._internal.arrays import real
+from restitution._internal.arrays import real, word
 from restitution._internal.files import path_from
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.experiment.flight._read._conventions import FORMATS, UNITS, Impact
@@ -68,8 +68,7 @@ def read(
     """
     if format is not None and not (isinstance(format, str) and format in FORMATS):
         raise ParameterError(wrong("format", format, f"{', '.join(map(repr, get_args(Format)))} or None"))
-    if not (isinstance(unit, str) and unit in UNITS):
-        raise ParameterError(wrong("unit", unit, " or ".join(map(repr, UNITS))))
+    word("unit", unit, UNITS)
     if uncertainty is not None:
         allowed = "a finite number > 0 (s), or None"
         uncertainty = real(
