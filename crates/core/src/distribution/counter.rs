@@ -2,7 +2,7 @@
 
 use super::batches::{Impacts, STRIDE};
 use super::guide::Guide;
-use super::nodes::{Nodes, divides, rises};
+use super::nodes::{Nodes, divides, range};
 use crate::memory::{empty, filled, zeros};
 use crate::{Error, Monitor, Resources};
 
@@ -57,25 +57,18 @@ impl Counter {
         batches: usize,
     ) -> Result<Self, Error> {
         let components = nodes.components();
-        let sound = start.len() == components + 1
-            && divides(&start, edges.len(), 1)
-            && start
-                .windows(2)
-                .all(|range| rises(&edges[range[0] as usize..range[1] as usize]));
+        let sound = divides(&start, components, &edges, 1);
         let allowed = "increasing, one or more for each component";
         Error::unless(sound, "edges", edges.len(), allowed)?;
         Error::unless(batches > 0, "batches", batches, "> 0")?;
         let batches = (0..batches).map(|_| CountedBatch::new(&nodes, components + edges.len()));
         let batches = batches.collect::<Result<_, _>>()?;
-        let guides = start
-            .windows(2)
-            .map(|range| Guide::new(&edges[range[0] as usize..range[1] as usize]))
-            .collect::<Result<_, _>>()?;
+        let guides = (0..components).map(|component| Guide::new(&edges[range(&start, component)]));
         Ok(Self {
+            guides: guides.collect::<Result<_, _>>()?,
             nodes,
             start,
             edges,
-            guides,
             batches,
         })
     }
@@ -113,7 +106,7 @@ impl Counter {
                     let around = nodes.around(v);
                     batch.see(around.0, z);
                     for (component, weight) in nodes.parts(around, z).iter() {
-                        let range = start[component] as usize..start[component + 1] as usize;
+                        let range = range(start, component);
                         let inner = &edges[range.clone()];
                         let bin = range.start + component + guides[component].reached(inner, e);
                         batch.add(component, weight, e, inner[inner.len() / 2]);

@@ -1,7 +1,7 @@
 //! The distribution as a table: mixtures of the histograms of neighbouring nodes, with bins of any width.
 
 use super::guide::Guide;
-use super::nodes::{Nodes, Parts, divides, rises};
+use super::nodes::{Nodes, Parts, divides, range};
 use super::{Broadcast, in_blocks};
 use crate::{Error, Monitor, Resources};
 
@@ -39,31 +39,26 @@ impl Mixture {
             edges,
             cumulative,
         } = &layout;
-        let sound = start.len() == nodes.components() + 1
-            && divides(start, edges.len(), 2)
+        let components = 0..nodes.components();
+        let sound = divides(start, components.len(), edges, 2)
             && cumulative.len() == edges.len()
-            && start.windows(2).all(|range| {
-                let range = range[0] as usize..range[1] as usize;
-                let below = &cumulative[range.clone()];
-                rises(&edges[range])
-                    && below.windows(2).all(|pair| pair[0] <= pair[1])
-                    && below[0] == 0.0
-                    && below[below.len() - 1] == 1.0
+            && components.clone().all(|component| {
+                let below = &cumulative[range(start, component)];
+                below.is_sorted() && below[0] == 0.0 && below[below.len() - 1] == 1.0
             });
         let allowed =
             "edges and cumulative probabilities that increase, from 0 to 1, for each node";
         Error::unless(sound, "table", nodes.number(), allowed)?;
-        let guides = start
-            .windows(2)
-            .map(|range| Guide::new(&edges[range[0] as usize..range[1] as usize]))
-            .collect::<Result<_, _>>()?;
-        Ok(Self { layout, guides })
+        let guides = components.map(|component| Guide::new(&edges[range(start, component)]));
+        Ok(Self {
+            guides: guides.collect::<Result<_, _>>()?,
+            layout,
+        })
     }
 
     /// Edges of a component, and the probability below each.
     pub(super) fn histogram(&self, component: usize) -> (&[f64], &[f64]) {
-        let start = &self.layout.start[component..component + 2];
-        let range = start[0] as usize..start[1] as usize;
+        let range = range(&self.layout.start, component);
         (
             &self.layout.edges[range.clone()],
             &self.layout.cumulative[range],

@@ -34,15 +34,23 @@ fn between(points: &[f64], reached: usize, x: f64) -> (usize, f64) {
 }
 
 /// Returns whether numbers increase strictly.
-pub(super) fn rises(x: &[f64]) -> bool {
+fn rises(x: &[f64]) -> bool {
     x.windows(2).all(|pair| pair[0] < pair[1])
 }
 
-/// Returns whether `start` divides `size` elements into ranges of `least` or more.
-pub(super) fn divides(start: &[i64], size: usize, least: i64) -> bool {
-    start.first() == Some(&0)
-        && start.last() == Some(&(size as i64))
+/// Returns whether `start` divides numbers into as many ranges as are wanted, of `least` numbers or more that increase strictly.
+pub(super) fn divides(start: &[i64], wanted: usize, numbers: &[f64], least: i64) -> bool {
+    start.len() == wanted + 1
+        && start[0] == 0
+        && start[wanted] == numbers.len() as i64
         && start.windows(2).all(|pair| pair[1] - pair[0] >= least)
+        && (0..wanted).all(|i| rises(&numbers[range(start, i)]))
+}
+
+/// Range number `i` of those that begin at `start`, whose last element is the end of the last one.
+#[inline]
+pub(super) fn range(start: &[i64], i: usize) -> Range<usize> {
+    start[i] as usize..start[i + 1] as usize
 }
 
 impl Nodes {
@@ -53,13 +61,8 @@ impl Nodes {
     /// [`Error::Parameter`] for fewer than two nodes, one without a component, or what does not increase, and
     /// [`Error::Memory`].
     pub fn new(speeds: Vec<f64>, first: Vec<i64>, conditions: Vec<f64>) -> Result<Self, Error> {
-        let sound = speeds.len() >= 2
-            && rises(&speeds)
-            && first.len() == speeds.len() + 1
-            && divides(&first, conditions.len(), 1)
-            && first
-                .windows(2)
-                .all(|range| rises(&conditions[range[0] as usize..range[1] as usize]));
+        let sound =
+            speeds.len() >= 2 && rises(&speeds) && divides(&first, speeds.len(), &conditions, 1);
         let allowed = "speeds that increase, and one condition or more for each, which increase";
         Error::unless(sound, "nodes", speeds.len(), allowed)?;
         Ok(Self {
@@ -80,12 +83,6 @@ impl Nodes {
         self.conditions.len()
     }
 
-    /// Indices of the components of a node.
-    #[inline]
-    fn components_of(&self, node: usize) -> Range<usize> {
-        self.first[node] as usize..self.first[node + 1] as usize
-    }
-
     /// The node below v, and the weight of the one above. Beyond the first or last node, that one alone has a weight.
     #[inline]
     pub(super) fn around(&self, v: f64) -> (usize, f64) {
@@ -95,7 +92,7 @@ impl Nodes {
     /// The component of a node below z, and the weight of the one above.
     #[inline]
     pub(super) fn given(&self, node: usize, z: f64) -> (usize, f64) {
-        let components = self.components_of(node);
+        let components = range(&self.first, node);
         let conditions = &self.conditions[components.clone()];
         if conditions.len() == 1 {
             return (components.start, 0.0);
