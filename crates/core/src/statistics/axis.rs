@@ -20,7 +20,7 @@ pub struct Axis {
     low: f64,
     last: f64,
     /// The number of an additional bin, which counts undefined values.
-    beyond: f64,
+    pub(super) beyond: f64,
     /// Difference of the numbers of a site in neighbouring rows of a grid: the number of bins plus one.
     pub(super) stride: f64,
     /// Bins per unit; 0 where the edges are not uniform.
@@ -72,12 +72,6 @@ impl Axis {
     /// Number of bins, including those below and above.
     pub(super) fn bins(&self) -> usize {
         self.edges.len() + 1
-    }
-
-    /// The additional bin, which counts undefined values.
-    #[inline(always)]
-    pub(super) fn beyond(&self) -> f64 {
-        self.beyond
     }
 
     /// Returns whether all bins have the same width.

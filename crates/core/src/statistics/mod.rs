@@ -5,13 +5,10 @@ mod bins;
 mod cells;
 mod histogram;
 mod moments;
-mod narrow;
-mod places;
 mod recent;
 mod rows;
 mod sink;
 mod whole;
-mod words;
 
 pub use axis::Axis;
 pub use bins::{Bins, By};

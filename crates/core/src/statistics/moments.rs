@@ -71,8 +71,7 @@ impl Wide {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sums {
     powers: [Wide; 4],
-    minimum: f64,
-    maximum: f64,
+    extremes: Extremes,
 }
 
 /// Moments of the values in a bin.
@@ -96,8 +95,7 @@ impl Sums {
     /// The sums of no values.
     pub const EMPTY: Self = Self {
         powers: [Wide::ZERO; 4],
-        minimum: f64::INFINITY,
-        maximum: f64::NEG_INFINITY,
+        extremes: Extremes::EMPTY,
     };
 
     /// Upper bound on the magnitude of an offset that can be added.
@@ -122,8 +120,9 @@ impl Sums {
 
     /// Adds the extremes of recent values.
     pub(super) fn widen(&mut self, extremes: &Extremes) {
-        self.minimum = self.minimum.min(extremes.minimum);
-        self.maximum = self.maximum.max(extremes.maximum);
+        let own = &mut self.extremes;
+        own.minimum = own.minimum.min(extremes.minimum);
+        own.maximum = own.maximum.max(extremes.maximum);
     }
 
     /// Adds the sums of another set of values.
@@ -131,8 +130,7 @@ impl Sums {
         for (sum, other) in self.powers.iter_mut().zip(other.powers) {
             *sum = sum.plus(other);
         }
-        self.minimum = self.minimum.min(other.minimum);
-        self.maximum = self.maximum.max(other.maximum);
+        self.widen(&other.extremes);
     }
 
     /// Calls `visit` with every word, which it may change. Words that the powers of 2⁶⁴ values do not need repeat the sign.
@@ -142,9 +140,8 @@ impl Sums {
             words.iter_mut().for_each(&mut *visit);
             rest.fill((words[power + 1] as i64 >> 63) as u64);
         }
-        for extreme in [&mut self.minimum, &mut self.maximum] {
-            float(extreme, visit);
-        }
+        float(&mut self.extremes.minimum, visit);
+        float(&mut self.extremes.maximum, visit);
     }
 
     /// Moments of `number` values whose offsets are relative to `origin`; NaN where there are none.
@@ -184,8 +181,8 @@ impl Sums {
             variance: or_nan(variance),
             skewness: spread(third / (variance * variance.sqrt())),
             kurtosis: spread(fourth / (variance * variance)),
-            minimum: or_nan(self.minimum),
-            maximum: or_nan(self.maximum),
+            minimum: or_nan(self.extremes.minimum),
+            maximum: or_nan(self.extremes.maximum),
         }
     }
 }

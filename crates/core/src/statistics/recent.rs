@@ -138,7 +138,7 @@ impl Recent {
 }
 
 /// The smallest and the largest of the recent values.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extremes {
     pub minimum: f64,
     pub maximum: f64,

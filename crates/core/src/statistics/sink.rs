@@ -4,8 +4,6 @@ use super::axis::Axis;
 use super::bins::{Bins, By, WHAT};
 use super::histogram::{Histogram, UNSPOILT};
 use super::moments::Sums;
-use super::narrow::Recently;
-use super::places::{all_sites, last, nowhere, sites};
 use super::recent::{
     COARSE, Extremes, Half, LARGEST, QUANTA, Recent, fraction_quanta, quanta, words,
 };
@@ -13,7 +11,7 @@ use super::rows::{CREATES_ENERGY, Rows, pulling};
 use super::whole::{ROUND, whole};
 use crate::drop::{Impact, ImpactSink, Meanwhile, PLACES, Pose, of_group};
 use crate::memory::{filled, zeros};
-use crate::simd::{LANES, Pack};
+use crate::simd::{LANES, Mask, Pack};
 use crate::{Error, StopReason};
 use pulp::Simd;
 use std::ops::{IndexMut, Range};
@@ -86,6 +84,26 @@ impl Queue {
     }
 }
 
+/// Number of impacts after which the narrow counters are emptied, before they can overflow.
+const MOST: u32 = u32::MAX - 1024;
+
+/// The number of impacts counted since they were last emptied.
+#[derive(Default)]
+struct Recently(u32);
+
+impl Recently {
+    /// Adds some impacts, fewer than 1024, and returns whether the counters must be emptied.
+    #[inline(always)]
+    fn add(&mut self, impacts: usize) -> bool {
+        self.0 += impacts as u32;
+        let full = self.0 > MOST;
+        if full {
+            self.0 = 0;
+        }
+        full
+    }
+}
+
 /// The place at which an impact is counted: indices into the grids of ε and of E_rot/E_tot, and the row; the last number is ε.
 type Counted = [f64; 4];
 
@@ -94,6 +112,41 @@ type Counted = [f64; 4];
 fn put<S: Simd>(queue: &mut [[f64; 4]], packs: [Pack<S, 1>; 4]) {
     let records = Pack::records(packs);
     queue.copy_from_slice(pulp::bytemuck::cast_slice(&records));
+}
+
+/// The last sites, which are never read, plus [`ROUND`]: one for each lane, so that none waits for another.
+#[inline(always)]
+fn nowhere<S: Simd, T>(simd: S, places: &[T]) -> Pack<S, 1> {
+    let mut sites = Pack::splat(simd, last(places));
+    for (lane, site) in sites.as_mut_slice().iter_mut().enumerate() {
+        *site -= (lane % LANES) as f64;
+    }
+    sites
+}
+
+/// The last of them.
+fn last<T>(places: &[T]) -> f64 {
+    (places.len() - 1) as f64 + ROUND
+}
+
+/// Numbers of the sites in `column`, to which [`ROUND`] was added, of row number `start`.
+#[inline(always)]
+fn sites<S: Simd>(axis: &Axis, start: Pack<S, 1>, column: Pack<S, 1>) -> Pack<S, 1> {
+    start.mul_add(axis.stride, column)
+}
+
+/// The same where values may be undefined, which are counted in the last column, or a lane may have no impact, which is counted at a
+/// site that is never read.
+#[inline(always)]
+fn all_sites<S: Simd>(
+    (axis, counts): (&Axis, &[u32]),
+    start: Pack<S, 1>,
+    column: Pack<S, 1>,
+    defined: Mask<S, 1>,
+    active: Mask<S, 1>,
+) -> Pack<S, 1> {
+    let column = defined.select(column, axis.beyond + ROUND);
+    active.select(sites(axis, start, column), nowhere(start.simd(), counts))
 }
 
 /// Moves the recent sums of a row to those of all rows.
@@ -342,5 +395,26 @@ impl<const EVEN: bool, const MOMENTS: bool> ImpactSink for HistogramSink<'_, EVE
 
     fn end(&mut self, _: usize, _: usize, reason: StopReason) {
         self.own.stops[reason as usize] += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Between two emptyings no counter has more impacts than it has room for, even if all are in one bin.
+    #[test]
+    fn narrow_counters_are_emptied_in_time() {
+        let mut recently = Recently::default();
+        let mut since = 0_u64;
+        let mut emptied = 0;
+        while emptied < 2 {
+            since += 512;
+            assert!(since <= u64::from(u32::MAX));
+            if recently.add(512) {
+                assert!(since > u64::from(MOST));
+                (since, emptied) = (0, emptied + 1);
+            }
+        }
     }
 }
