@@ -87,27 +87,24 @@ impl<const N: usize> Stored for [f64; N] {
 
     #[inline(always)]
     fn put(column: &mut Slices<'_>, cells: &[(usize, usize)], value: impl Fn(usize) -> Self) {
-        let Elements::Numbers(column) = column else {
-            unreachable!("elements of its kind")
-        };
-        for &(lane, cell) in cells {
-            column[N * cell..N * (cell + 1)].copy_from_slice(&value(lane));
-        }
+        Stored::put(column, cells, |lane| [value(lane)]);
     }
 }
 
-impl<const N: usize> Stored for [[f64; N]; 2] {
+/// Of one body, or of each of two.
+impl<const N: usize, const BODIES: usize> Stored for [[f64; N]; BODIES] {
     const KIND: Element = Elements::Numbers(());
     const COMPONENTS: &'static [&'static str] = components(N);
-    const EACH: bool = true;
+    const EACH: bool = BODIES == 2;
 
     #[inline(always)]
     fn put(column: &mut Slices<'_>, cells: &[(usize, usize)], value: impl Fn(usize) -> Self) {
         let Elements::Numbers(column) = column else {
             unreachable!("elements of its kind")
         };
+        let width = BODIES * N;
         for &(lane, cell) in cells {
-            column[2 * N * cell..][..2 * N].copy_from_slice(value(lane).as_flattened());
+            column[width * cell..][..width].copy_from_slice(value(lane).as_flattened());
         }
     }
 }
@@ -266,7 +263,7 @@ impl TableColumns {
     }
 }
 
-/// TableRows of a table.
+/// Rows of a table.
 pub(crate) struct TableRows<'a> {
     all: &'static [Variable],
     pub per_row: usize,
