@@ -16,25 +16,11 @@ impl Run<'_> {
     /// [`Error::Parameter`] or [`Error::Magnitude`] for a parameter out of range, [`Error::Memory`], [`Error::Threads`], and
     /// [`Error::Numerical`] if a contact search does not converge.
     pub fn simulate(&self, resources: Resources, monitor: &Monitor) -> Result<Records, Error> {
-        self.simulate_part(0..self.particles, resources, monitor)
+        let usual = Columns::usual(self.body, &self.law, false);
+        self.simulate_columns(0..self.particles, &usual, resources, monitor)
     }
 
-    /// As [`Run::simulate`], for some of the particles of the run.
-    pub fn simulate_part(
-        &self,
-        part: Range<usize>,
-        resources: Resources,
-        monitor: &Monitor,
-    ) -> Result<Records, Error> {
-        self.simulate_columns(
-            part,
-            &Columns::usual(self.body, &self.law, false),
-            resources,
-            monitor,
-        )
-    }
-
-    /// As [`Run::simulate_part`], recording the variables in `columns`.
+    /// As [`Run::simulate`], for some of the particles of the run, recording the variables in `columns`.
     pub fn simulate_columns(
         &self,
         part: Range<usize>,

@@ -70,20 +70,16 @@ fn a_particle_is_the_same_by_itself() {
             level: Level::best(),
         };
         let series = [(run, 30..40), (other, 0..20)];
-        let found = Records::from(
-            simulate_series(
-                &series,
-                &Columns::usual(run.body, &run.law, false),
-                resources,
-                &Monitor::default(),
-            )
-            .unwrap(),
+        let (columns, monitor) = (
+            Columns::usual(run.body, &run.law, false),
+            Monitor::default(),
         );
+        let found = Records::from(simulate_series(&series, &columns, resources, &monitor).unwrap());
         let expected = [&all[0].time[30 * 40..40 * 40], &all[1].time[..20 * 40]].concat();
         let bits = |times: &[f64]| times.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&found.time), bits(&expected));
         let alone = Records::from(
-            run.simulate_part(33..34, resources, &Monitor::default())
+            run.simulate_columns(33..34, &columns, resources, &monitor)
                 .unwrap(),
         );
         assert_eq!(bits(&alone.time), bits(&all[0].time[33 * 40..34 * 40]));
