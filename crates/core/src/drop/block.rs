@@ -110,19 +110,14 @@ impl<T: ImpactSink> Block<'_, T> {
         body: &Body,
         cycle: &impl Advance<S, K>,
     ) -> Result<(), Error> {
-        let Self {
-            runs,
-            particles,
-            monitor,
-            sink,
-        } = self;
+        let runs = self.runs;
         bounce::<S, K, _, GROUPS>(
             simd,
             (body, runs.plan().limits()),
             cycle,
-            (&Released { runs, body }, particles),
-            sink,
-            || !monitor.is_cancelled(),
+            (&Released { runs, body }, self.particles),
+            self.sink,
+            || !self.monitor.is_cancelled(),
         )
         .map_err(|lost| error(runs, lost))
     }
@@ -130,25 +125,20 @@ impl<T: ImpactSink> Block<'_, T> {
     /// Bodies of any shape, one after the other.
     #[inline(always)]
     fn rigid<S: Simd>(self, simd: S, body: &Rigid) -> Result<(), Error> {
-        let Self {
-            runs,
-            particles,
-            monitor,
-            sink,
-        } = self;
+        let runs = self.runs;
         let plan = runs.plan();
         let bouncing = rigid::Bouncing { plan, body };
-        sink.begin();
-        for particle in particles {
-            if monitor.is_cancelled() {
+        self.sink.begin();
+        for particle in self.particles {
+            if self.monitor.is_cancelled() {
                 break;
             }
             let (plan, number) = runs.origin(particle);
             let start = plan.rigid(body, number);
             let chance = |impact| of_impact(plan.run.seed, number as u64, impact);
             bouncing
-                .bounce(simd, (particle, start), chance, sink, || {
-                    !monitor.is_cancelled()
+                .bounce(simd, (particle, start), chance, self.sink, || {
+                    !self.monitor.is_cancelled()
                 })
                 .map_err(|lost| error(runs, lost))?;
         }
@@ -177,24 +167,20 @@ impl Release for Released<'_> {
 
 /// The error that names the particle, its seed and the flight or the impact in question.
 fn error(runs: &JoinedRuns<'_>, lost: Lost) -> Error {
-    let Lost {
-        particle,
-        impacts,
-        fault,
-    } = lost;
-    let (plan, number) = runs.origin(particle);
+    let (plan, number) = runs.origin(lost.particle);
     let (particle, seed) = (number as u64, plan.run.seed);
-    match fault {
+    let impact = lost.impacts as u64;
+    match lost.fault {
         None => Error::Numerical {
             particle,
             seed,
-            flight: impacts as u64,
+            flight: impact,
         },
         Some(fault) => Error::Law {
             law: plan.law.custom.map_or("", |law| law.name()).to_owned(),
             particle,
             seed,
-            impact: impacts as u64,
+            impact,
             fault: *fault,
         },
     }

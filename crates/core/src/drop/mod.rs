@@ -6,8 +6,6 @@ mod plan;
 mod recorded;
 mod release;
 mod rigid;
-mod scales;
-mod series;
 mod stop;
 mod table;
 
@@ -17,11 +15,10 @@ pub use lanes::one_lane::{
     FlightEnd, FlightStart, NoConvergence, SingleImpact, collide, first_contact, trajectory,
 };
 pub(crate) use lanes::{Impact, ImpactSink, Meanwhile, PLACES, Pose, of_group};
-pub(crate) use plan::Plan;
+pub use plan::Scales;
+pub(crate) use plan::{JoinedRuns, Plan};
 pub use recorded::{PER_IMPACT, PER_PARTICLE};
 pub use release::{About, Height, Orientation, Spin};
-pub use scales::Scales;
-pub(crate) use series::JoinedRuns;
 pub use stop::{COLLAPSE_RUN, Limits, StopReason};
 pub use table::Records;
 pub(crate) use table::Table;

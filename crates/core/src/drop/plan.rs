@@ -1,8 +1,7 @@
-//! A run that has been checked, in the core's units, ready for the bounce loop.
+//! A run, or several side by side, checked and in the core's units: lengths in R, times in √(R/g), ready for the bounce loop.
 
-use super::{Height, Orientation, Run, Scales};
+use super::{Height, Limits, Orientation, Run};
 use crate::Error;
-use crate::drop::Limits;
 use crate::law::Law;
 use crate::math::{Quaternion, Vector};
 use crate::motion::State;
@@ -10,6 +9,43 @@ use crate::shape::{AnyBody, Body, Rigid, Solid};
 use crate::simd::elementary::sincos;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
+
+/// The units of length, time and speed of a run, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scales {
+    /// R, in m.
+    pub length: f64,
+    /// √(R/g), in s.
+    pub time: f64,
+    /// √(gR), in m/s.
+    pub speed: f64,
+}
+
+impl Scales {
+    /// The scales for a sphere radius (m) and an acceleration of gravity normal to the plane (m/s²).
+    ///
+    /// # Errors
+    /// Unless gravity is finite and > 0, and if R/g or gR overflows or underflows.
+    pub fn new(radius: f64, gravity: f64) -> Result<Self, Error> {
+        let allowed = "finite and > 0 (m/s^2)";
+        let positive = gravity.is_finite() && gravity > 0.0;
+        Error::unless(positive, "gravity", gravity, allowed)?;
+        // A subnormal number has few digits, and its root is normal again.
+        let (time_squared, speed_squared) = (radius / gravity, radius * gravity);
+        let representable = time_squared.is_normal() && speed_squared.is_normal();
+        Error::unless(
+            representable,
+            "gravity",
+            gravity,
+            "such that R/g and gR neither overflow nor underflow",
+        )?;
+        Ok(Self {
+            length: radius,
+            time: time_squared.sqrt(),
+            speed: speed_squared.sqrt(),
+        })
+    }
+}
 
 /// A run that has been checked, in the core's units.
 pub(crate) struct Plan<'a> {
@@ -46,36 +82,21 @@ impl<'a> Plan<'a> {
         Error::unless(run.particles > 0, "particles", 0.0, "> 0")?;
         Error::unless(run.impacts > 0, "impacts", 0.0, "> 0")?;
         let speed = run.minimum_speed;
-        let allowed = "finite and >= 0 (m/s)";
-        Error::unless(
-            speed.is_finite() && speed >= 0.0,
-            "minimum_speed",
-            speed,
-            allowed,
-        )?;
+        let holds = speed.is_finite() && speed >= 0.0;
+        Error::unless(holds, "minimum_speed", speed, "finite and >= 0 (m/s)")?;
         run.orientation.check(run.particles)?;
         run.check_directions()?;
         let incline = run.incline;
-        let allowed = "in [0, pi/2) (rad)";
-        Error::unless(
-            (0.0..FRAC_PI_2).contains(&incline),
-            "incline",
-            incline,
-            allowed,
-        )?;
+        let holds = (0.0..FRAC_PI_2).contains(&incline);
+        Error::unless(holds, "incline", incline, "in [0, pi/2) (rad)")?;
         let (sine, cosine) = sincos(incline);
         let scales = Scales::new(run.body.unit(), run.gravity * cosine)?;
         run.spin.check(run.particles, FASTEST / scales.time)?;
         let velocity = run.release_velocity;
-        for component in [velocity.x, velocity.y, velocity.z] {
+        for component in velocity.parts() {
             let allowed = "finite, at most 1e100 sqrt(gR) (m/s) either way";
-            let most = FASTEST * scales.speed;
-            Error::unless(
-                component.abs() <= most,
-                "release_velocity",
-                component,
-                allowed,
-            )?;
+            let holds = component.abs() <= FASTEST * scales.speed;
+            Error::unless(holds, "release_velocity", component, allowed)?;
         }
         let plan = Self {
             run,
@@ -208,5 +229,69 @@ impl<'a> Plan<'a> {
         let axis = Vector::new(sine * x, sine * y, cosine);
         let spin = spin * self.scales.time;
         State::with_spin(body, height, self.velocity, axis, spin)
+    }
+}
+
+/// Parts of one run or of several, whose particles are numbered from part to part.
+pub(crate) struct JoinedRuns<'a>(Vec<RunPart<'a>>);
+
+/// Some particles of a run.
+struct RunPart<'a> {
+    plan: Plan<'a>,
+    /// Number in the run of the first of them.
+    first: usize,
+    /// Their numbers among those of all parts.
+    numbers: Range<usize>,
+}
+
+impl<'a> JoinedRuns<'a> {
+    /// # Errors
+    /// As [`Plan::new`], [`Plan::check_part`], and [`Error::Parameter`] if there is no run, or runs differ in more than seed, number of
+    /// particles and release.
+    pub fn new(runs: &'a [(Run<'a>, Range<usize>)]) -> Result<Self, Error> {
+        let allowed = "one or more that differ in seed, number of particles and release alone";
+        let alike = runs.windows(2).all(|two| two[0].0.is_like(&two[1].0));
+        Error::unless(!runs.is_empty() && alike, "runs", runs.len(), allowed)?;
+        let mut start = 0;
+        let parts = runs.iter().map(|(run, part)| {
+            let plan = Plan::new(run)?;
+            plan.check_part(part)?;
+            let numbers = start..start + part.len();
+            start = numbers.end;
+            Ok(RunPart {
+                plan,
+                first: part.start,
+                numbers,
+            })
+        });
+        Ok(Self(parts.collect::<Result<_, Error>>()?))
+    }
+
+    /// All particles of a run.
+    pub fn of(run: &'a Run<'a>) -> Result<Self, Error> {
+        Ok(Self(vec![RunPart {
+            plan: Plan::new(run)?,
+            first: 0,
+            numbers: 0..run.particles,
+        }]))
+    }
+
+    /// Number of all particles.
+    pub fn particles(&self) -> usize {
+        self.0[self.0.len() - 1].numbers.end
+    }
+
+    /// What is the same for all particles.
+    #[inline(always)]
+    pub fn plan(&self) -> &Plan<'a> {
+        &self.0[0].plan
+    }
+
+    /// The run of a particle, and its number there.
+    #[inline(always)]
+    pub fn origin(&self, particle: usize) -> (&Plan<'a>, usize) {
+        let part = self.0.partition_point(|part| part.numbers.end <= particle);
+        let part = &self.0[part];
+        (&part.plan, part.first + (particle - part.numbers.start))
     }
 }

@@ -188,14 +188,12 @@ impl<'a> Table<'a> {
             let Some(Elements::Counts(counts)) = &self.block.particles.columns[0] else {
                 return;
             };
-            let mut first = counts[row] as usize;
-            while first < end {
+            for first in (counts[row] as usize..end).step_by(STRIDE) {
                 if monitor.is_cancelled() {
                     return;
                 }
                 let next = end.min(first + STRIDE);
                 self.block.impacts.blank(row, first..next);
-                first = next;
             }
             self.block.settled[row] = true;
         }

@@ -166,7 +166,7 @@ impl Spin<'_> {
             })
         };
         match *self {
-            Self::Fixed(spin) => all([spin.x, spin.y, spin.z]),
+            Self::Fixed(spin) => all(spin.parts()),
             Self::Given(spins) => {
                 let count = spins.len();
                 let allowed = "the number of particles";
