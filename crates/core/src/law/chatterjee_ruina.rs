@@ -1,11 +1,13 @@
 //! The law of A. Chatterjee and A. Ruina, *A new algebraic rigid-body collision law based on impulse space considerations*,
 //! J. Appl. Mech. **65**, 939 (1998).
 
+use super::coulomb::{FRICTION, check_friction};
 use super::{
     Compliant, Components, Contact, Creation, ImpulseRule, LawKind, Response, Sliding, Slip,
+    tangential,
 };
 use crate::Error;
-use crate::describe::{Arguments, Interval, Kind, Parameter};
+use crate::describe::{Arguments, Kind};
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -28,22 +30,7 @@ impl ChatterjeeRuina {
         kind: Kind {
             name: "ChatterjeeRuina",
             text: "restitution along and across the normal, within the friction cone",
-            parameters: &[
-                Parameter::number(
-                    "tangential",
-                    "tangential coefficient of restitution",
-                    "1",
-                    Interval::from(-1.0, 1.0),
-                    0.0,
-                ),
-                Parameter::number(
-                    "friction",
-                    "coefficient of friction",
-                    "1",
-                    Interval::from(0.0, super::MOST_FRICTION),
-                    0.3,
-                ),
-            ],
+            parameters: &[tangential::parameter(0.0), FRICTION],
             make: |given| Ok(Self::new(given.number(0), given.number(1))?.into()),
         },
         creates_energy: Creation::Never,
@@ -55,13 +42,8 @@ impl ChatterjeeRuina {
     /// # Errors
     /// [`Error::Parameter`] for e_t outside [−1, 1] or μ outside [0, 10¹⁰⁰].
     pub fn new(tangential: f64, friction: f64) -> Result<Self, Error> {
-        Error::unless(
-            (-1.0..=1.0).contains(&tangential),
-            "tangential",
-            tangential,
-            "in [-1, 1]",
-        )?;
-        super::coulomb::check_friction(friction)?;
+        tangential::check(tangential)?;
+        check_friction(friction)?;
         Ok(Self {
             tangential,
             friction,

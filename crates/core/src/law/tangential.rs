@@ -6,7 +6,7 @@ use super::{
 };
 use crate::Error;
 use crate::describe::{Argument, Arguments, Interval, Kind, Parameter};
-use crate::simd::{Operand, Pack};
+use crate::simd::Pack;
 use pulp::Simd;
 
 /// Normal and tangential restitution of the contact velocity, (9).
@@ -25,14 +25,7 @@ impl TangentialRestitution {
         kind: Kind {
             name: "TangentialRestitution",
             text: "both components of the contact velocity change by a fixed factor",
-            parameters: &[Parameter::number(
-                "tangential",
-                "tangential coefficient of restitution",
-                "1",
-                Interval::from(-1.0, 1.0),
-                1.0,
-            )
-            .or(Argument::Number(1.0))],
+            parameters: &[parameter(1.0).or(Argument::Number(1.0))],
             make: |given| Ok(Self::new(given.number(0))?.into()),
         },
         creates_energy: Creation::Possible,
@@ -44,33 +37,25 @@ impl TangentialRestitution {
     /// # Errors
     /// [`Error::Parameter`] for ε_t outside [−1, 1].
     pub fn new(tangential: f64) -> Result<Self, Error> {
-        Error::unless(
-            (-1.0..=1.0).contains(&tangential),
-            "tangential",
-            tangential,
-            "in [-1, 1]",
-        )?;
+        check(tangential)?;
         Ok(Self { tangential })
     }
+}
 
-    /// The response for `rebound` = −ε_n and `change` = −(1 + ε_n).
-    #[inline(always)]
-    fn with<S: Simd, const SPACE: bool>(
-        &self,
-        rebound: impl Operand<S, 1>,
-        change: impl Operand<S, 1>,
-        contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
-    ) -> Response<Pack<S, 1>> {
-        let velocity = contact.velocity;
-        Response {
-            impulse: contact.compliance.impulse::<SPACE>(Components {
-                normal: velocity.normal * change,                  // (9), (10)
-                along: (self.tangential - 1.0) * velocity.along,   // (9), (10)
-                across: (self.tangential - 1.0) * velocity.across, // (9), (10)
-            }),
-            separation_speed: velocity.normal * rebound, // (9)
-        }
-    }
+/// A tangential coefficient among the parameters of a law.
+pub(super) const fn parameter(example: f64) -> Parameter {
+    Parameter::number(
+        "tangential",
+        "tangential coefficient of restitution",
+        "1",
+        Interval::from(-1.0, 1.0),
+        example,
+    )
+}
+
+pub(super) fn check(tangential: f64) -> Result<(), Error> {
+    let holds = (-1.0..=1.0).contains(&tangential);
+    Error::unless(holds, "tangential", tangential, "in [-1, 1]")
 }
 
 impl ImpulseRule for TangentialRestitution {
@@ -80,7 +65,15 @@ impl ImpulseRule for TangentialRestitution {
         contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
         normal: Pack<S, 1>,
     ) -> Response<Pack<S, 1>> {
-        self.with::<S, SPACE>(-normal, -(normal + 1.0), contact)
+        let velocity = contact.velocity;
+        Response {
+            impulse: contact.compliance.impulse::<SPACE>(Components {
+                normal: velocity.normal * -(normal + 1.0), // (9), (10)
+                along: (self.tangential - 1.0) * velocity.along, // (9), (10)
+                across: (self.tangential - 1.0) * velocity.across, // (9), (10)
+            }),
+            separation_speed: velocity.normal * -normal, // (9)
+        }
     }
 }
 
@@ -104,9 +97,8 @@ impl Respond for Steady {
         responses: &mut [Response<Pack<S, 1>>],
     ) {
         for (contact, response) in contacts.iter().zip(responses) {
-            *response = self
-                .rule
-                .with::<S, SPACE>(-self.normal, -(1.0 + self.normal), contact);
+            let normal = Pack::splat(contact.velocity.normal.simd(), self.normal);
+            *response = self.rule.respond::<S, SPACE>(contact, normal);
         }
     }
 }

@@ -68,13 +68,7 @@ impl Coulomb {
             name: "Coulomb",
             text: "dry friction, with slip that may stop, turn or reverse",
             parameters: &[
-                Parameter::number(
-                    "friction",
-                    "coefficient of friction",
-                    "1",
-                    Interval::from(0.0, MOST_FRICTION),
-                    0.3,
-                ),
+                FRICTION,
                 Parameter::new(
                     "hypothesis",
                     "the condition that ends the impact",
@@ -139,6 +133,15 @@ pub(super) trait Sliding<S: Simd> {
 
 /// Largest μ; beyond it products of μ could overflow, and every contact sticks long before.
 pub const MOST_FRICTION: f64 = 1e100;
+
+/// μ among the parameters of a law.
+pub(super) const FRICTION: Parameter = Parameter::number(
+    "friction",
+    "coefficient of friction",
+    "1",
+    Interval::from(0.0, MOST_FRICTION),
+    0.3,
+);
 
 pub(super) fn check_friction(friction: f64) -> Result<(), Error> {
     Error::unless(

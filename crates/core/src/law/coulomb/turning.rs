@@ -11,7 +11,6 @@
 //! ([`VanishingSlip`]). The ends of compression and restitution follow from power series about a point next to
 //! them ([`Near`]). Wherever the slip has come to rest the rest of the impact is a straight line in p.
 
-mod queue;
 #[cfg(test)]
 #[path = "../../../tests/friction/parts.rs"]
 mod tests;
@@ -19,7 +18,7 @@ mod tests;
 use super::{Coulomb, Hypothesis};
 use crate::law::{Compliant, Components, Contact, ImpulseRule, MOST_CONTACTS, Response};
 use crate::simd::elementary::{exp_in_lanes, exp_m1_in_lanes, polynomial};
-use crate::simd::{Mask, Pack};
+use crate::simd::{LANES, Mask, Pack};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::PI;
 
@@ -1294,7 +1293,39 @@ impl<S: Simd> OngoingImpacts<S> {
             separation_speed: plastic.select(0.0, course.v.max(0.0)) * scale,
         }
     }
+
+    /// Takes others in the lanes of the mask.
+    #[inline(always)]
+    fn take(&mut self, mask: Mask<S, 1>, others: &Self) {
+        *self = Self {
+            rates: Rates::choose(mask, &others.rates, &self.rates),
+            goal: Goal::choose(mask, &others.goal, &self.goal),
+            course: Course::choose(mask, &others.course, &self.course),
+            panels: mask.select(others.panels, self.panels),
+        };
+    }
+
+    /// Answers the contacts that are over, and frees their lanes.
+    #[inline(always)]
+    fn end(&self, places: &mut Places, responses: &mut [Response<Pack<S, 1>>]) {
+        if !self.course.over.any() {
+            return;
+        }
+        let answer = self.answer();
+        self.course.over.each(|lane| {
+            if let Some((i, k)) = places[lane].take() {
+                responses[i].put(k, &answer.lane(lane));
+            }
+        });
+    }
 }
+
+// ========================================================================================================
+// All contacts: those that take more than one step wait in a queue for a lane, so that no lane is idle while others are under way
+// ========================================================================================================
+
+/// Vector and lane from which the contact in each lane has come; none where there is no contact.
+type Places = [Option<(usize, usize)>; LANES];
 
 /// Contacts that may slip in any direction, μ > 0, to be answered in a function of its own: it is long.
 pub(in crate::law) struct Turning<'a, S: Simd> {
@@ -1309,30 +1340,65 @@ impl<S: Simd> WithSimd for Turning<'_, S> {
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _: T) {
-        let Self {
-            rule,
-            contacts,
-            restitution,
-            responses,
-        } = self;
-        // 1 in the lanes whose answer is not known yet.
-        let mut open = [Pack::splat(restitution[0].simd(), 0.0); MOST_CONTACTS];
+        // The lanes whose answer is not known yet.
+        let mut open = [Mask::splat(self.restitution[0].simd(), false); MOST_CONTACTS];
         let mut waits = false;
-        for (i, (contact, &restitution)) in contacts.iter().zip(restitution).enumerate() {
+        for (i, (contact, &restitution)) in self.contacts.iter().zip(self.restitution).enumerate() {
             let turns = !contact.velocity.across.eq(0.0);
-            let mut impacts = OngoingImpacts::new(contact, restitution, rule);
+            let mut impacts = OngoingImpacts::new(contact, restitution, self.rule);
             impacts.stop();
-            responses[i] = impacts.answer();
+            self.responses[i] = impacts.answer();
             if !turns.all() {
-                let straight = rule.respond::<S, false>(contact, restitution);
-                responses[i] = responses[i].or(!turns, &straight);
+                let straight = self.rule.respond::<S, false>(contact, restitution);
+                self.responses[i] = self.responses[i].or(!turns, &straight);
             }
-            let left = !impacts.course.over & turns;
-            open[i] = left.select(1.0, 0.0);
-            waits |= left.any();
+            open[i] = !impacts.course.over & turns;
+            waits |= open[i].any();
         }
         if waits {
-            queue::finish(rule, contacts, restitution, &open, responses);
+            self.finish(&open);
+        }
+    }
+}
+
+impl<S: Simd> Turning<'_, S> {
+    /// Finds the responses that are open.
+    #[inline(always)]
+    fn finish(self, open: &[Mask<S, 1>]) {
+        let width = Pack::<S, 1>::WIDTH;
+        let mut waiting = (0..self.contacts.len() * width)
+            .map(|j| (j / width, j % width))
+            .filter(|&(i, k)| open[i].get(k));
+        let none = Pack::splat(open[0].simd(), 0.0);
+        let nothing = Contact::none(none.simd());
+        let mut impacts = OngoingImpacts::new(&nothing, none, self.rule);
+        let mut places: Places = [None; LANES];
+        loop {
+            let (mut contact, mut restitution) = (nothing, none);
+            let mut taken = Mask::splat(none.simd(), false);
+            for (lane, place) in places[..width].iter_mut().enumerate() {
+                if place.is_some() {
+                    continue;
+                }
+                *place = waiting.next();
+                let Some((i, k)) = *place else { break };
+                contact.put(lane, &self.contacts[i].lane(k));
+                restitution.as_mut_slice()[lane] = self.restitution[i].as_slice()[k];
+                taken.set(lane, true);
+            }
+            if taken.any() {
+                let new = OngoingImpacts::new(&contact, restitution, self.rule);
+                impacts.take(taken, &new);
+            }
+            if impacts.course.over.all() {
+                break;
+            }
+            impacts.stop();
+            impacts.end(&mut places, self.responses);
+            if !impacts.course.over.all() {
+                impacts.advance();
+                impacts.end(&mut places, self.responses);
+            }
         }
     }
 }
