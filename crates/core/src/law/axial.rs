@@ -2,7 +2,7 @@
 
 use super::{Compliant, Components};
 use crate::simd::{Pack, one};
-use pulp::{Scalar, Simd};
+use pulp::Simd;
 
 /// The matrix K = I/m + \[**r**_c\]ᵀĴ⁻¹\[**r**_c\], which turns an impulse into the change of contact velocity (10), in units of 1/m:
 /// a block for **n** and **u** and an entry for **w**. It is stored as what it follows from, so that a law solves it as in (14).
@@ -21,7 +21,7 @@ pub struct AxialCompliance<T = f64> {
 impl AxialCompliance {
     /// The impulse that changes the contact velocity by `change`: K P = Δ**v**_c (10).
     pub fn impulse(&self, change: Components) -> Components {
-        let solved = self.in_lane().impulse::<true>(change.map(one));
+        let solved = self.map(one).impulse::<true>(change.map(one));
         solved.map(|component| component.as_slice()[0])
     }
 
@@ -35,14 +35,17 @@ impl AxialCompliance {
             across: self.ww * impulse.across,
         }
     }
+}
 
-    /// The compliance in a single lane.
-    pub(crate) fn in_lane(&self) -> AxialCompliance<Pack<Scalar, 1>> {
+impl<T: Copy> AxialCompliance<T> {
+    /// The same function of every number but the moment of inertia, which all lanes share.
+    #[inline(always)]
+    pub(super) fn map<U>(&self, f: impl Fn(T) -> U) -> AxialCompliance<U> {
         AxialCompliance {
             inertia: self.inertia,
-            arm_normal: one(self.arm_normal),
-            arm_along: one(self.arm_along),
-            ww: one(self.ww),
+            arm_normal: f(self.arm_normal),
+            arm_along: f(self.arm_along),
+            ww: f(self.ww),
         }
     }
 }

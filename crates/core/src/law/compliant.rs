@@ -1,7 +1,7 @@
 //! Operations of the laws on the matrix K (10), so that each formula stands once, for every K.
 
 use crate::math::Vector;
-use crate::simd::{Pack, one};
+use crate::simd::{Mask, Pack, one};
 use pulp::{Scalar, Simd};
 
 /// Components along **n**, **u** and **w**: numbers, or one in each lane.
@@ -24,6 +24,37 @@ impl<T: Copy> Components<T> {
             along: f(self.along),
             across: f(self.across),
         }
+    }
+}
+
+impl<S: Simd> Components<Pack<S, 1>> {
+    /// The same number along every direction in every lane.
+    #[inline(always)]
+    pub(super) fn splat(simd: S, number: f64) -> Self {
+        let pack = Pack::splat(simd, number);
+        Self {
+            normal: pack,
+            along: pack,
+            across: pack,
+        }
+    }
+
+    /// The same, but those of `other` in the lanes of the mask.
+    #[inline(always)]
+    pub(super) fn or(self, mask: Mask<S, 1>, other: &Self) -> Self {
+        Self {
+            normal: mask.select(other.normal, self.normal),
+            along: mask.select(other.along, self.along),
+            across: mask.select(other.across, self.across),
+        }
+    }
+
+    /// Puts components into a lane.
+    #[inline(always)]
+    pub(super) fn put(&mut self, lane: usize, of: Components) {
+        self.normal.as_mut_slice()[lane] = of.normal;
+        self.along.as_mut_slice()[lane] = of.along;
+        self.across.as_mut_slice()[lane] = of.across;
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::{AxialCompliance, Components};
 use crate::math::Vector;
-use crate::simd::{Mask, Pack, one};
-use pulp::{Scalar, Simd};
+use crate::simd::{Mask, Pack};
+use pulp::Simd;
 
 /// A contact, in the core's units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,13 +32,13 @@ pub struct Answer {
     pub separation_speed: f64,
 }
 
-impl Contact {
-    /// The contact in a single lane.
+impl<T: Copy> Contact<T> {
+    /// The same function of every number.
     #[inline(always)]
-    pub(crate) fn in_lane(&self) -> Contact<Pack<Scalar, 1>> {
+    pub(crate) fn map<U>(&self, f: impl Fn(T) -> U) -> Contact<U> {
         Contact {
-            velocity: self.velocity.map(one),
-            compliance: self.compliance.in_lane(),
+            velocity: self.velocity.map(&f),
+            compliance: self.compliance.map(f),
         }
     }
 }
@@ -46,35 +46,18 @@ impl Contact {
 impl<S: Simd> Contact<Pack<S, 1>> {
     /// The contact in a lane.
     pub(crate) fn lane(&self, lane: usize) -> Contact {
-        let at = |pack: Pack<S, 1>| pack.as_slice()[lane];
-        let k = &self.compliance;
-        Contact {
-            velocity: self.velocity.map(at),
-            compliance: AxialCompliance {
-                inertia: k.inertia,
-                arm_normal: at(k.arm_normal),
-                arm_along: at(k.arm_along),
-                ww: at(k.ww),
-            },
-        }
+        self.map(|number| number.as_slice()[lane])
     }
 
     /// Puts a contact of the same body into a lane.
     #[inline(always)]
     pub(super) fn put(&mut self, lane: usize, contact: &Contact) {
-        let (own, k) = (&mut self.velocity, &mut self.compliance);
-        let (velocity, other) = (contact.velocity, contact.compliance);
+        let (k, other) = (&mut self.compliance, &contact.compliance);
+        self.velocity.put(lane, contact.velocity);
         k.inertia = other.inertia;
-        for (to, from) in [
-            (&mut own.normal, velocity.normal),
-            (&mut own.along, velocity.along),
-            (&mut own.across, velocity.across),
-            (&mut k.arm_normal, other.arm_normal),
-            (&mut k.arm_along, other.arm_along),
-            (&mut k.ww, other.ww),
-        ] {
-            to.as_mut_slice()[lane] = from;
-        }
+        k.arm_normal.as_mut_slice()[lane] = other.arm_normal;
+        k.arm_along.as_mut_slice()[lane] = other.arm_along;
+        k.ww.as_mut_slice()[lane] = other.ww;
     }
 
     /// No contact.
@@ -82,11 +65,7 @@ impl<S: Simd> Contact<Pack<S, 1>> {
     pub fn none(simd: S) -> Self {
         let zero = Pack::splat(simd, 0.0);
         Self {
-            velocity: Components {
-                normal: zero,
-                along: zero,
-                across: zero,
-            },
+            velocity: Components::splat(simd, 0.0),
             compliance: AxialCompliance {
                 inertia: 1.0,
                 arm_normal: zero,
@@ -109,27 +88,17 @@ impl<S: Simd> Response<Pack<S, 1>> {
     /// The answer to no contact.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
-        let zero = Pack::splat(simd, 0.0);
         Self {
-            impulse: Components {
-                normal: zero,
-                along: zero,
-                across: zero,
-            },
-            separation_speed: zero,
+            impulse: Components::splat(simd, 0.0),
+            separation_speed: Pack::splat(simd, 0.0),
         }
     }
 
     /// The same answers, but those of `other` in the lanes of the mask.
     #[inline(always)]
     pub(super) fn or(self, mask: Mask<S, 1>, other: &Self) -> Self {
-        let (own, others) = (self.impulse, other.impulse);
         Self {
-            impulse: Components {
-                normal: mask.select(others.normal, own.normal),
-                along: mask.select(others.along, own.along),
-                across: mask.select(others.across, own.across),
-            },
+            impulse: self.impulse.or(mask, &other.impulse),
             separation_speed: mask.select(other.separation_speed, self.separation_speed),
         }
     }
@@ -137,15 +106,8 @@ impl<S: Simd> Response<Pack<S, 1>> {
     /// Puts an answer into a lane.
     #[inline(always)]
     pub(crate) fn put(&mut self, lane: usize, answer: &Response) {
-        let own = &mut self.impulse;
-        for (to, from) in [
-            (&mut own.normal, answer.impulse.normal),
-            (&mut own.along, answer.impulse.along),
-            (&mut own.across, answer.impulse.across),
-            (&mut self.separation_speed, answer.separation_speed),
-        ] {
-            to.as_mut_slice()[lane] = from;
-        }
+        self.impulse.put(lane, answer.impulse);
+        self.separation_speed.as_mut_slice()[lane] = answer.separation_speed;
     }
 
     /// The answer in a lane.

@@ -4,6 +4,7 @@ use super::{Answer, AxialCompliance, Compliance, Compliant, Components, Contact,
 use crate::Fault;
 use crate::math::flat::{rotate, rotate_back};
 use crate::math::{Symmetric, Vector};
+use crate::simd::one;
 use std::fmt;
 
 /// The impulse of a contact in SI units.
@@ -129,7 +130,7 @@ impl<'a> CustomLaw<'a> {
 impl AxialCompliance {
     /// The full matrix, where **u** has these components along x and y.
     fn turned(&self, [x, y]: [f64; 2]) -> Compliance {
-        let k = self.in_lane();
+        let k = self.map(one);
         let [nn, uu, nu, ww] = [k.nn(), k.uu(), k.nu(), k.ww()].map(|entry| entry.as_slice()[0]);
         Compliance::of_entries(Symmetric {
             xx: uu * x * x + ww * y * y,

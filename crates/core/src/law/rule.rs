@@ -127,7 +127,7 @@ impl<'a> Law<'a> {
             deviation: 0.0,
             ..*self
         };
-        steady.respond_all::<_, true>(&[contact.in_lane()], &[], &mut found);
+        steady.respond_all::<_, true>(&[contact.map(one)], &[], &mut found);
         found[0].lane(0)
     }
 

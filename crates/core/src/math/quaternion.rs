@@ -158,14 +158,10 @@ impl<S: Simd> Quaternions<S> {
 
     #[inline(always)]
     pub(crate) fn put(&mut self, lane: usize, of: Quaternion) {
-        for (own, part) in [
-            (&mut self.w, of.w),
-            (&mut self.x, of.x),
-            (&mut self.y, of.y),
-            (&mut self.z, of.z),
-        ] {
-            own.as_mut_slice()[lane] = part;
-        }
+        self.w.as_mut_slice()[lane] = of.w;
+        self.x.as_mut_slice()[lane] = of.x;
+        self.y.as_mut_slice()[lane] = of.y;
+        self.z.as_mut_slice()[lane] = of.z;
     }
 
     #[inline(always)]
