@@ -1,7 +1,7 @@
 //! Coulomb friction beside impacts solved with thirty digits by Taylor series of the slip's own equation (`friction/reference.py`): by the law for any
 //! K, and where K has an axis by that of bodies of revolution in lanes, too.
 
-use restitution_core::law::{AxialCompliance, Components, Contact};
+use restitution_core::law::{AxialCompliance, Contact};
 use restitution_core::{Compliance, Coulomb, Hypothesis, Law, Symmetric, Vector};
 
 /// The largest distance from the reference, over the size of the impulse, and that of nine impacts in ten.
@@ -81,11 +81,7 @@ fn compare(text: &str, count: usize, allowed: Errors) {
             let velocity = Vector::new(u, w, -speed);
             answer = law(mu, e).answer(&k.unwrap(), velocity).unwrap();
             let contact = Contact {
-                velocity: Components {
-                    normal: -speed,
-                    along: u,
-                    across: w,
-                },
+                velocity,
                 compliance: AxialCompliance {
                     inertia,
                     arm_normal: n,
@@ -94,7 +90,6 @@ fn compare(text: &str, count: usize, allowed: Errors) {
                 },
             };
             let found = law(mu, e).respond(&contact).impulse;
-            let found = Vector::new(found.along, found.across, found.normal);
             lanes.push(((found - expected).norm() / expected.norm(), line));
         }
         full.push(((answer.impulse - expected).norm() / expected.norm(), line));

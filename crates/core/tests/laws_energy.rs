@@ -14,12 +14,12 @@ fn growing(seed: u64, mut law: impl FnMut(&mut Random) -> Law<'static>) -> (u64,
     let mut most: f64 = 0.0;
     let mut look = |law: Law<'_>, contact: &Contact| {
         let response = law.respond(contact);
-        let (gain, scale) = (gain(contact, &response), size(response.impulse));
+        let (gain, scale) = (gain(contact, &response), response.impulse.norm());
         let allowed = 64.0 * rounding(contact, &response) * scale;
         assert!(gain.is_finite(), "{law:?} {contact:?} {response:?}");
         if gain > allowed {
             count += 1;
-            most = most.max(gain / (scale * size(contact.velocity)));
+            most = most.max(gain / (scale * contact.velocity.norm()));
         }
     };
     for number in 0..IMPACTS {
@@ -97,7 +97,7 @@ fn the_friction_cone_is_respected() {
             chatterjee_ruina(e, tangential_coefficient, mu),
         ] {
             let response = law.respond(&contact);
-            let (friction, limit) = (tangential(response.impulse), mu * response.impulse.normal);
+            let (friction, limit) = (tangential(response.impulse), mu * response.impulse.z);
             let allowed = 64.0 * (1.0 + mu) * rounding(&contact, &response);
             assert!(
                 friction <= limit + allowed,

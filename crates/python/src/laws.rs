@@ -7,7 +7,7 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, ToPyArray};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use restitution_core::law::{
-    AxialCompliance, Compliance, Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW,
+    AxialCompliance, Compliance, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW,
 };
 use restitution_core::{
     Error, Fault, ImpulseFunction, LAWS, MATERIALS, Normal, Raised, Rule, Scattered, Symmetric,
@@ -194,11 +194,7 @@ impl Law {
         }
         let (normal, along, w) = slip;
         let response = self.law().respond(&Contact {
-            velocity: Components {
-                normal,
-                along,
-                across: w,
-            },
+            velocity: Vector::new(along, w, normal),
             compliance: AxialCompliance {
                 inertia,
                 arm_normal: arm.0,
@@ -207,7 +203,7 @@ impl Law {
             },
         });
         let p = response.impulse;
-        Ok(((p.normal, p.along, p.across), response.separation_speed))
+        Ok(((p.z, p.x, p.y), response.separation_speed))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The compliance of a body of revolution that touches a plane.
 
-use super::{Compliant, Components};
+use super::Compliant;
+use crate::math::{Vector, Vectors};
 use crate::simd::{Pack, one};
 use pulp::Simd;
 
@@ -20,19 +21,18 @@ pub struct AxialCompliance<T = f64> {
 
 impl AxialCompliance {
     /// The impulse that changes the contact velocity by `change`: K P = Δ**v**_c (10).
-    pub fn impulse(&self, change: Components) -> Components {
-        let solved = self.map(one).impulse::<true>(change.map(one));
-        solved.map(|component| component.as_slice()[0])
+    pub fn impulse(&self, change: Vector) -> Vector {
+        self.map(one).impulse::<true>(change.in_lane()).lane(0)
     }
 
     /// The change of the contact velocity by an impulse, K P (10).
-    pub fn change(&self, impulse: Components) -> Components {
+    pub fn change(&self, impulse: Vector) -> Vector {
         let (n, u, j) = (self.arm_normal, self.arm_along, self.inertia);
-        let torque = n.mul_add(impulse.along, -(u * impulse.normal)) / j;
-        Components {
-            normal: u.mul_add(-torque, impulse.normal),
-            along: n.mul_add(torque, impulse.along),
-            across: self.ww * impulse.across,
+        let torque = n.mul_add(impulse.x, -(u * impulse.z)) / j;
+        Vector {
+            x: n.mul_add(torque, impulse.x),
+            y: self.ww * impulse.y,
+            z: u.mul_add(-torque, impulse.z),
         }
     }
 }
@@ -57,25 +57,25 @@ impl<S: Simd> Compliant<S> for AxialCompliance<Pack<S, 1>> {
     }
 
     #[inline(always)]
-    fn pushed(&self, normal: Pack<S, 1>, velocity: &Components<Pack<S, 1>>) -> [Pack<S, 1>; 2] {
-        [self.nu().mul_add(normal, velocity.along), velocity.across]
+    fn pushed(&self, normal: Pack<S, 1>, velocity: &Vectors<S, 1>) -> [Pack<S, 1>; 2] {
+        [self.nu().mul_add(normal, velocity.x), velocity.y]
     }
 
     /// Solved as in (14).
     #[inline(always)]
-    fn impulse<const SPACE: bool>(&self, change: Components<Pack<S, 1>>) -> Components<Pack<S, 1>> {
+    fn impulse<const SPACE: bool>(&self, change: Vectors<S, 1>) -> Vectors<S, 1> {
         let (n, u, j) = (self.arm_normal, self.arm_along, self.inertia);
         let nn = n.mul_add(n, j);
         let inverse = 1.0 / u.mul_add(u, nn); // 1/(J_xx/m + r_c²)
         let cross = n * u;
-        Components {
-            normal: nn.mul_add(change.normal, cross * change.along) * inverse, // (14)
-            along: u.mul_add(u, j).mul_add(change.along, cross * change.normal) * inverse, // (14)
-            across: if SPACE {
-                change.across / self.ww
+        Vector {
+            x: u.mul_add(u, j).mul_add(change.x, cross * change.z) * inverse, // (14)
+            y: if SPACE {
+                change.y / self.ww
             } else {
                 Pack::splat(n.simd(), 0.0)
             },
+            z: nn.mul_add(change.z, cross * change.x) * inverse, // (14)
         }
     }
 }

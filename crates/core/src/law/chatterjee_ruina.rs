@@ -3,11 +3,11 @@
 
 use super::coulomb::{FRICTION, check_friction};
 use super::{
-    Compliant, Components, Contact, Creation, ImpulseRule, LawKind, Response, Sliding, Slip,
-    tangential,
+    Compliant, Contact, Creation, ImpulseRule, LawKind, Response, Sliding, Slip, tangential,
 };
 use crate::Error;
 use crate::describe::{Arguments, Kind};
+use crate::math::Vector;
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -64,27 +64,19 @@ impl ImpulseRule for ChatterjeeRuina {
         let (k, velocity) = (&contact.compliance, contact.velocity);
         let frictionless = speed / k.nn(); // P_I
         let [along, across] = k.pushed(frictionless, &velocity); // tangential contact velocity after P_I
-        let stop = k.impulse::<SPACE>(Components {
-            normal: zero,
-            along: -along,
-            across: -across,
-        }); // P_II − P_I
+        let stop = k.impulse::<SPACE>(Vector::new(-along, -across, zero)); // P_II − P_I
         let tangential = if SPACE {
-            length(stop.along, stop.across)
+            length(stop.x, stop.y)
         } else {
-            stop.along.abs()
+            stop.x.abs()
         };
         let most = restitution.mul_add(frictionless, frictionless);
-        let excess = stop.normal.mul_add(-self.friction, tangential);
+        let excess = stop.z.mul_add(-self.friction, tangential);
         let wanted = 1.0 + self.tangential;
         let outside = (most * self.friction).lt(excess * wanted);
         let share = outside.select(most * self.friction / excess, wanted); // κ
         Response {
-            impulse: Components {
-                normal: share.mul_add(stop.normal, most),
-                along: share * stop.along,
-                across: share * stop.across,
-            },
+            impulse: Vector::new(share * stop.x, share * stop.y, share.mul_add(stop.z, most)),
             separation_speed: restitution * speed, // P_II − P_I does not change the normal contact velocity
         }
     }

@@ -1,8 +1,8 @@
 //! The change of the contact velocity by an impulse at the point of contact, for bodies of any shape.
 
-use super::{Compliant, Components};
+use super::Compliant;
 use crate::Error;
-use crate::math::{Symmetric, Vector};
+use crate::math::{Symmetric, Vector, Vectors};
 use crate::simd::{Pack, one};
 use pulp::Scalar;
 use std::ops::Add;
@@ -99,21 +99,18 @@ impl Compliant<Scalar> for Compliance {
     fn pushed(
         &self,
         normal: Pack<Scalar, 1>,
-        velocity: &Components<Pack<Scalar, 1>>,
+        velocity: &Vectors<Scalar, 1>,
     ) -> [Pack<Scalar, 1>; 2] {
         let k = self.entries();
         [
-            normal.mul_add(k.xz, velocity.along),
-            normal.mul_add(k.yz, velocity.across),
+            normal.mul_add(k.xz, velocity.x),
+            normal.mul_add(k.yz, velocity.y),
         ]
     }
 
     #[inline(always)]
-    fn impulse<const SPACE: bool>(
-        &self,
-        change: Components<Pack<Scalar, 1>>,
-    ) -> Components<Pack<Scalar, 1>> {
-        Components::in_lane(self.impulse(change.in_axes()))
+    fn impulse<const SPACE: bool>(&self, change: Vectors<Scalar, 1>) -> Vectors<Scalar, 1> {
+        self.impulse(change.lane(0)).in_lane()
     }
 }
 

@@ -1,35 +1,27 @@
 //! A contact as a law sees it: a velocity and a compliance; and the impulse that a law answers with.
 
-use super::{AxialCompliance, Components};
+use super::AxialCompliance;
 use crate::math::Vector;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// A contact, in the core's units.
+/// A contact. The z axis of its frame is **n**; for a body of revolution x is along **u**, the horizontal direction of the symmetry axis,
+/// and y along **w** = **n** × **u**.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact<T = f64, K = AxialCompliance<T>> {
-    /// Velocity **v**_c of the point of contact (7), (8); `normal` ≤ 0.
-    pub velocity: Components<T>,
+    /// Velocity **v**_c of the point of contact (7), (8); z ≤ 0.
+    pub velocity: Vector<T>,
     /// The matrix K (10).
     pub compliance: K,
 }
 
-/// The answer of a law to a contact, in the core's units.
+/// The answer of a law to a contact, in the frame of the contact and in the units of its compliance and velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response<T = f64> {
-    /// Impulse **P** on the particle (10).
-    pub impulse: Components<T>,
+    /// Impulse **P** on the body (10).
+    pub impulse: Vector<T>,
     /// Normal velocity of the point of contact after the impact, ≥ 0.
     pub separation_speed: T,
-}
-
-/// The answer of a law for any compliance, in the units of compliance and velocity.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Answer {
-    /// Impulse **P** on the body (10).
-    pub impulse: Vector,
-    /// Normal velocity of the point of contact after the impact, ≥ 0.
-    pub separation_speed: f64,
 }
 
 impl<T: Copy> Contact<T> {
@@ -65,7 +57,7 @@ impl<S: Simd> Contact<Pack<S, 1>> {
     pub fn none(simd: S) -> Self {
         let zero = Pack::splat(simd, 0.0);
         Self {
-            velocity: Components::splat(simd, 0.0),
+            velocity: Vector::splat(simd, Vector::default()),
             compliance: AxialCompliance {
                 inertia: 1.0,
                 arm_normal: zero,
@@ -80,7 +72,7 @@ impl<S: Simd, K> Contact<Pack<S, 1>, K> {
     /// The speed of approach, −v_c^n ≥ 0.
     #[inline(always)]
     pub fn approach_speed(&self) -> Pack<S, 1> {
-        self.velocity.normal.abs()
+        self.velocity.z.abs()
     }
 }
 
@@ -89,7 +81,7 @@ impl<S: Simd> Response<Pack<S, 1>> {
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         Self {
-            impulse: Components::splat(simd, 0.0),
+            impulse: Vector::splat(simd, Vector::default()),
             separation_speed: Pack::splat(simd, 0.0),
         }
     }
@@ -98,7 +90,7 @@ impl<S: Simd> Response<Pack<S, 1>> {
     #[inline(always)]
     pub(super) fn or(self, mask: Mask<S, 1>, other: &Self) -> Self {
         Self {
-            impulse: self.impulse.or(mask, &other.impulse),
+            impulse: self.impulse.or(mask, other.impulse),
             separation_speed: mask.select(other.separation_speed, self.separation_speed),
         }
     }
@@ -114,7 +106,7 @@ impl<S: Simd> Response<Pack<S, 1>> {
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> Response {
         Response {
-            impulse: self.impulse.map(|component| component.as_slice()[lane]),
+            impulse: self.impulse.lane(lane),
             separation_speed: self.separation_speed.as_slice()[lane],
         }
     }

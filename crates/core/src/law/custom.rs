@@ -1,6 +1,6 @@
 //! A law of one's own: a function that is asked for the impulse of one contact at a time.
 
-use super::{Answer, AxialCompliance, Compliance, Compliant, Components, Contact, Response};
+use super::{AxialCompliance, Compliance, Compliant, Contact, Response};
 use crate::Fault;
 use crate::math::flat::{rotate, rotate_back};
 use crate::math::{Symmetric, Vector};
@@ -78,7 +78,7 @@ impl<'a> CustomLaw<'a> {
         &self,
         compliance: &Compliance,
         velocity: Vector,
-    ) -> Result<Answer, Fault> {
+    ) -> Result<Response, Fault> {
         let k = compliance.entries();
         let in_units = k.rows().map(|row| row.map(|entry| entry / self.mass));
         let given = self.function.impulse(in_units, velocity * self.speed)?;
@@ -103,7 +103,7 @@ impl<'a> CustomLaw<'a> {
         if separation < -rounding {
             return Err(Fault::Approaches(given.parts(), -separation * self.speed));
         }
-        Ok(Answer {
+        Ok(Response {
             impulse,
             separation_speed: separation.max(0.0),
         })
@@ -111,19 +111,12 @@ impl<'a> CustomLaw<'a> {
 
     /// The answer to a contact of a body of revolution whose **u** has these components along x and y.
     pub(crate) fn respond(&self, contact: &Contact, u: [f64; 2]) -> Result<Response, Fault> {
-        let velocity = contact.velocity;
-        let [x, y] = rotate_back(u, [velocity.along, velocity.across]);
-        let velocity = Vector::new(x, y, velocity.normal);
-        let answer = self.answer(&contact.compliance.turned(u), velocity)?;
-        let [along, across] = rotate(u, [answer.impulse.x, answer.impulse.y]);
-        Ok(Response {
-            impulse: Components {
-                normal: answer.impulse.z,
-                along,
-                across,
-            },
-            separation_speed: answer.separation_speed,
-        })
+        let mut velocity = contact.velocity;
+        [velocity.x, velocity.y] = rotate_back(u, [velocity.x, velocity.y]);
+        let mut answer = self.answer(&contact.compliance.turned(u), velocity)?;
+        let impulse = &mut answer.impulse;
+        [impulse.x, impulse.y] = rotate(u, [impulse.x, impulse.y]);
+        Ok(answer)
     }
 }
 

@@ -1,9 +1,8 @@
 //! The law without friction: **P** ∥ **n**.
 
-use super::{
-    Compliant, Components, Contact, Creation, ImpulseRule, LawKind, Response, Sliding, Slip,
-};
+use super::{Compliant, Contact, Creation, ImpulseRule, LawKind, Response, Sliding, Slip};
 use crate::describe::Kind;
+use crate::math::Vector;
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -47,10 +46,10 @@ impl ImpulseRule for Frictionless {
     ) -> Response<Pack<S, 1>> {
         let speed = contact.approach_speed();
         Response {
-            impulse: Components {
-                normal: Self::impulse(normal, speed, contact.compliance.nn()),
-                along: speed * 0.0,
-                across: speed * 0.0,
+            impulse: Vector {
+                x: speed * 0.0,
+                y: speed * 0.0,
+                z: Self::impulse(normal, speed, contact.compliance.nn()),
             },
             separation_speed: normal * speed,
         }

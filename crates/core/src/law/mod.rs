@@ -3,12 +3,11 @@
 //!
 //! For a body of revolution K separates in the frame of **n**, of **u**, the horizontal direction of the axis, and of
 //! **w** = **n** × **u**, into a 2×2 block {**n**, **u**} and a single entry for **w**. Each formula is written once, for a contact in
-//! each lane and, through `compliant`, for either K; terms along **w** are omitted where all motion is in the plane of **n** and **u**.
+//! each lane and, through `Compliant`, for either K; terms along **w** are omitted where all motion is in the plane of **n** and **u**.
 
 mod axial;
 mod chatterjee_ruina;
 mod compliance;
-mod compliant;
 mod contact;
 mod coulomb;
 mod custom;
@@ -21,9 +20,7 @@ mod tangential;
 pub use axial::AxialCompliance;
 pub use chatterjee_ruina::ChatterjeeRuina;
 pub use compliance::Compliance;
-use compliant::Compliant;
-pub use compliant::Components;
-pub use contact::{Answer, Contact, Response};
+pub use contact::{Contact, Response};
 pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
 pub use custom::{CustomLaw, ImpulseFunction};
 pub use frictionless::Frictionless;
@@ -33,9 +30,22 @@ pub use normal::*;
 pub use rule::Law;
 pub use tangential::TangentialRestitution;
 
+use crate::math::Vectors;
 use crate::simd::Pack;
 use coulomb::Sliding;
 use pulp::Simd;
+
+/// The matrix K of the contact in each lane: that of a body of revolution, or of any body.
+trait Compliant<S: Simd> {
+    /// K_nn.
+    fn nn(&self) -> Pack<S, 1>;
+
+    /// The components of the contact velocity along **u** and **w** after an impulse along **n**.
+    fn pushed(&self, normal: Pack<S, 1>, velocity: &Vectors<S, 1>) -> [Pack<S, 1>; 2];
+
+    /// The impulse that changes the contact velocity by `change`: K P = Δ**v**_c (10). Without `SPACE` nothing happens along **w**.
+    fn impulse<const SPACE: bool>(&self, change: Vectors<S, 1>) -> Vectors<S, 1>;
+}
 
 /// A rule, as a law applies it.
 trait ImpulseRule {

@@ -1,9 +1,8 @@
 //! The choice of a law.
 
 use super::{
-    Answer, Compliance, Components, Contact, CustomLaw, Frictionless, ImpulseFunction,
-    MOST_CONTACTS, Material, Normal, Respond, Response, Rule, coulomb::Turning, normal::scattered,
-    tangential::Steady,
+    Compliance, Contact, CustomLaw, Frictionless, ImpulseFunction, MOST_CONTACTS, Material, Normal,
+    Respond, Response, Rule, coulomb::Turning, normal::scattered, tangential::Steady,
 };
 use crate::Error;
 use crate::Fault;
@@ -136,7 +135,7 @@ impl<'a> Law<'a> {
     ///
     /// # Errors
     /// [`Fault`] if a law of one's own gives no impulse that is possible.
-    pub fn answer(&self, compliance: &Compliance, velocity: Vector) -> Result<Answer, Fault> {
+    pub fn answer(&self, compliance: &Compliance, velocity: Vector) -> Result<Response, Fault> {
         self.answer_drawn(compliance, velocity, None)
     }
 
@@ -147,22 +146,18 @@ impl<'a> Law<'a> {
         compliance: &Compliance,
         velocity: Vector,
         chance: Option<f64>,
-    ) -> Result<Answer, Fault> {
+    ) -> Result<Response, Fault> {
         // One that leaves only touches.
         let velocity = Vector::new(velocity.x, velocity.y, velocity.z.min(0.0));
         if let Some(law) = &self.custom {
             return law.answer(compliance, velocity);
         }
         let contact = Contact {
-            velocity: Components::in_lane(velocity),
+            velocity: velocity.in_lane(),
             compliance: *compliance,
         };
         let normal = self.coefficient(one(velocity.z.abs()), chance.map(one));
-        let response = self.rule.respond::<_, true>(&contact, normal);
-        Ok(Answer {
-            impulse: response.impulse.in_axes(),
-            separation_speed: response.separation_speed.as_slice()[0],
-        })
+        Ok(self.rule.respond::<_, true>(&contact, normal).lane(0))
     }
 
     /// ε_n at a speed, where it scatters with uniform numbers in (0, 1).
@@ -207,7 +202,7 @@ impl Respond for Law<'_> {
         let Some(first) = contacts.first() else {
             return;
         };
-        first.velocity.normal.simd().vectorize(Choice::<S, SPACE> {
+        first.velocity.z.simd().vectorize(Choice::<S, SPACE> {
             law: self,
             contacts,
             chances,
@@ -240,7 +235,7 @@ impl<S: Simd, const SPACE: bool> WithSimd for Choice<'_, '_, S, SPACE> {
             chances,
             responses,
         } = self;
-        let simd = contacts[0].velocity.normal.simd();
+        let simd = contacts[0].velocity.z.simd();
         let mut normal = [Pack::splat(simd, 0.0); MOST_CONTACTS];
         for (i, contact) in contacts.iter().enumerate() {
             let chances = law.scatters().then(|| chances[i]);

@@ -1,11 +1,9 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{
-    Compliant, Components, Contact, Creation, ImpulseRule, LawKind, Respond, Response, Sliding,
-    Slip,
-};
+use super::{Compliant, Contact, Creation, ImpulseRule, LawKind, Respond, Response, Sliding, Slip};
 use crate::Error;
 use crate::describe::{Argument, Arguments, Interval, Kind, Parameter};
+use crate::math::Vector;
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -67,12 +65,12 @@ impl ImpulseRule for TangentialRestitution {
     ) -> Response<Pack<S, 1>> {
         let velocity = contact.velocity;
         Response {
-            impulse: contact.compliance.impulse::<SPACE>(Components {
-                normal: velocity.normal * -(normal + 1.0), // (9), (10)
-                along: (self.tangential - 1.0) * velocity.along, // (9), (10)
-                across: (self.tangential - 1.0) * velocity.across, // (9), (10)
+            impulse: contact.compliance.impulse::<SPACE>(Vector {
+                x: (self.tangential - 1.0) * velocity.x, // (9), (10)
+                y: (self.tangential - 1.0) * velocity.y, // (9), (10)
+                z: velocity.z * -(normal + 1.0),         // (9), (10)
             }),
-            separation_speed: velocity.normal * -normal, // (9)
+            separation_speed: velocity.z * -normal, // (9)
         }
     }
 }
@@ -97,7 +95,7 @@ impl Respond for Steady {
         responses: &mut [Response<Pack<S, 1>>],
     ) {
         for (contact, response) in contacts.iter().zip(responses) {
-            let normal = Pack::splat(contact.velocity.normal.simd(), self.normal);
+            let normal = Pack::splat(contact.velocity.z.simd(), self.normal);
             *response = self.rule.respond::<S, SPACE>(contact, normal);
         }
     }

@@ -81,6 +81,16 @@ impl<T: Copy> Vector<T> {
     pub const fn parts(self) -> [T; 3] {
         [self.x, self.y, self.z]
     }
+
+    /// The same function of every component.
+    #[inline(always)]
+    pub(crate) fn map<U>(self, f: impl Fn(T) -> U) -> Vector<U> {
+        Vector {
+            x: f(self.x),
+            y: f(self.y),
+            z: f(self.z),
+        }
+    }
 }
 
 impl<T: Part> Vector<T> {

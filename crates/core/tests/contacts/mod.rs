@@ -1,7 +1,7 @@
 //! What the tests of the laws share: random contacts, with the corners of the laws among them, and the energy of an impulse.
 
-use restitution_core::law::{AxialCompliance, Components, Contact, Response};
-use restitution_core::{ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law};
+use restitution_core::law::{AxialCompliance, Contact, Response};
+use restitution_core::{ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Vector};
 
 pub const HYPOTHESES: [Hypothesis; 3] =
     [Hypothesis::Stronge, Hypothesis::Poisson, Hypothesis::Newton];
@@ -66,11 +66,7 @@ impl Random {
         // The farther away the mass is, the larger is J_xx: |r_c|² ≲ 4 J_xx/m in every body of revolution that we know.
         let reach = 2.0 * inertia.sqrt();
         Contact {
-            velocity: Components {
-                normal: -normal,
-                along: slip,
-                across: 0.0,
-            },
+            velocity: Vector::new(slip, 0.0, -normal),
             compliance: AxialCompliance {
                 inertia,
                 arm_normal: -self.between(0.0, 1.0) * reach,
@@ -87,7 +83,7 @@ impl Random {
     /// One that slips across it, too.
     pub fn spatial(&mut self) -> Contact {
         let mut contact = self.planar();
-        contact.velocity.across = if self.uniform() < 0.8 {
+        contact.velocity.y = if self.uniform() < 0.8 {
             self.between(-2.0, 2.0)
         } else {
             self.magnitude(-8.0, 2.0)
@@ -110,46 +106,32 @@ pub fn chatterjee_ruina(normal: f64, tangential: f64, friction: f64) -> Law<'sta
 }
 
 /// Contact velocity after the impact.
-pub fn after(contact: &Contact, response: &Response) -> Components {
-    let change = contact.compliance.change(response.impulse);
-    Components {
-        normal: contact.velocity.normal + change.normal,
-        along: contact.velocity.along + change.along,
-        across: contact.velocity.across + change.across,
-    }
+pub fn after(contact: &Contact, response: &Response) -> Vector {
+    contact.velocity + contact.compliance.change(response.impulse)
 }
 
-pub fn size(v: Components) -> f64 {
-    (v.normal * v.normal + v.along * v.along + v.across * v.across).sqrt()
-}
-
-pub fn tangential(v: Components) -> f64 {
-    v.along.hypot(v.across)
+pub fn tangential(v: Vector) -> f64 {
+    v.x.hypot(v.y)
 }
 
 /// What an impulse and the velocities it makes are rounded to, over its own size: K enlarges both.
 pub fn rounding(contact: &Contact, response: &Response) -> f64 {
-    let impulse = size(response.impulse);
+    let impulse = response.impulse.norm();
     let square = contact.compliance.arm_normal.powi(2) + contact.compliance.arm_along.powi(2);
     let largest = 1.0 + square / contact.compliance.inertia + contact.compliance.ww;
-    f64::EPSILON * (size(contact.velocity) + largest * impulse)
+    f64::EPSILON * (contact.velocity.norm() + largest * impulse)
 }
 
 /// The work of the impulse, P·(v_c + v_c′)/2.
 pub fn gain(contact: &Contact, response: &Response) -> f64 {
-    let (p, v, w) = (response.impulse, contact.velocity, after(contact, response));
-    0.5 * (p.normal * (v.normal + w.normal)
-        + p.along * (v.along + w.along)
-        + p.across * (v.across + w.across))
+    0.5 * response
+        .impulse
+        .dot(contact.velocity + after(contact, response))
 }
 
 /// Both responses, to within their roundings times `factor`.
 pub fn agree(contact: &Contact, a: &Response, b: &Response, factor: f64) -> bool {
-    let difference = Components {
-        normal: a.impulse.normal - b.impulse.normal,
-        along: a.impulse.along - b.impulse.along,
-        across: a.impulse.across - b.impulse.across,
-    };
     let allowed = factor * rounding(contact, a).max(rounding(contact, b));
-    size(difference) <= allowed && (a.separation_speed - b.separation_speed).abs() <= allowed
+    (a.impulse - b.impulse).norm() <= allowed
+        && (a.separation_speed - b.separation_speed).abs() <= allowed
 }

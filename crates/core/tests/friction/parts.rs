@@ -25,11 +25,8 @@ impl Case {
         hypothesis: Hypothesis,
     ) -> OngoingImpacts<Scalar> {
         let mut contact = Contact::none(Scalar::new());
-        contact.velocity = Components {
-            normal: one(-normal),
-            along: one(slip * self.direction.cos()),
-            across: one(slip * self.direction.sin()),
-        };
+        let (sine, cosine) = self.direction.sin_cos();
+        contact.velocity = Vector::new(slip * cosine, slip * sine, -normal).in_lane();
         let rule = Coulomb::new(self.friction, hypothesis).unwrap();
         let mut impacts = OngoingImpacts::new(&contact, one(0.5), &rule);
         let response = [self.nn, self.nu, self.uu, self.ww].map(one);

@@ -148,7 +148,7 @@ impl<H: Hull, L: Respond> Inlined<'_, H, L> {
             for (i, group) in groups.iter_mut().enumerate() {
                 let point = group.land(hull);
                 let contact = group.contact(body, point);
-                let mut response = Response::none(contact.velocity.normal.simd());
+                let mut response = Response::none(contact.velocity.z.simd());
                 law.respond_all::<S, false>(
                     from_ref(&contact),
                     from_ref(&chances[i]),

@@ -1,8 +1,8 @@
 //! The impact of a body: the contact that a law is applied to, (6)–(8), and the motion afterwards, (11).
 
 use super::interleaved::GROUPS;
-use crate::law::{AxialCompliance, Components, Contact, Response};
-use crate::math::Vectors;
+use crate::law::{AxialCompliance, Contact, Response};
+use crate::math::{Vector, Vectors};
 use crate::motion::{
     Flight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion, SpatialState, SymmetricState,
 };
@@ -127,10 +127,10 @@ impl<S: Simd> Collide<S> for PlanarState<S, 1> {
         let [arm_x, arm_z] = planar_arm(self, point);
         let zero = Pack::splat(vx.simd(), 0.0);
         Contact {
-            velocity: Components {
-                normal: (vz - spin * arm_x).min(0.0), // (7); at a grazing contact it may have changed sign within the last step
-                along: vx + spin * arm_z,             // (7)
-                across: zero,
+            velocity: Vector {
+                x: vx + spin * arm_z, // (7)
+                y: zero,
+                z: (vz - spin * arm_x).min(0.0), // (7); at a grazing contact it may have changed sign within the last step
             },
             compliance: AxialCompliance {
                 inertia: body.transverse,
@@ -155,10 +155,10 @@ impl<S: Simd> Collide<S> for PlanarState<S, 1> {
         let PlanarMotion { vx, vz, spin } = self.motion;
         let [arm_x, arm_z] = planar_arm(self, point);
         let impulse = &response.impulse;
-        let torque = arm_z.mul_add(impulse.along, -(arm_x * impulse.normal));
+        let torque = arm_z.mul_add(impulse.x, -(arm_x * impulse.z));
         PlanarMotion {
-            vx: vx + impulse.along,                            // (11)
-            vz: vz + impulse.normal,                           // (11)
+            vx: vx + impulse.x,                                // (11)
+            vz: vz + impulse.z,                                // (11)
             spin: torque.mul_add(1.0 / body.transverse, spin), // (11)
         }
     }
@@ -219,10 +219,10 @@ impl<S: Simd> Collide<S> for SpatialState<S, 1> {
             (roll * roll).mul_add(1.0 / body.axial, 1.0),
         );
         Contact {
-            velocity: Components {
-                normal: (velocity.z + turning.z).min(0.0), // (7); as in the plane
-                along: x.mul_add(along_x, y * along_y),
-                across: y.mul_add(along_x, -(x * along_y)),
+            velocity: Vector {
+                x: x.mul_add(along_x, y * along_y),
+                y: y.mul_add(along_x, -(x * along_y)),
+                z: (velocity.z + turning.z).min(0.0), // (7); as in the plane
             },
             compliance: AxialCompliance {
                 inertia: body.transverse,
@@ -257,11 +257,7 @@ impl<S: Simd> Collide<S> for SpatialState<S, 1> {
             along_y,
             ..
         } = ContactFrame::new(self, point);
-        let Components {
-            normal,
-            along,
-            across,
-        } = response.impulse;
+        let [along, across, normal] = response.impulse.parts();
         let impulse = Vectors {
             x: along.mul_add(along_x, -(across * along_y)),
             y: along.mul_add(along_y, across * along_x),

@@ -274,7 +274,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
     pub fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>> {
         let mut contact = self.before().contact(body, point);
         if T::SPACE {
-            let across = &mut contact.velocity.across;
+            let across = &mut contact.velocity.y;
             *across = self.landing().select(*across, 0.0);
         }
         contact

@@ -11,9 +11,10 @@ mod planar;
 mod slipping;
 mod turning;
 
-use super::{Compliant, Components, Contact, Creation, ImpulseRule, LawKind, Response, Slip};
+use super::{Compliant, Contact, Creation, ImpulseRule, LawKind, Response, Slip};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
+use crate::math::Vectors;
 use crate::simd::Pack;
 use pulp::Simd;
 pub(super) use turning::Turning;
@@ -126,7 +127,7 @@ pub(super) trait Sliding<S: Simd> {
     fn slide(
         &self,
         rule: &Coulomb,
-        velocity: Components<Pack<S, 1>>,
+        velocity: Vectors<S, 1>,
         restitution: Pack<S, 1>,
     ) -> Response<Pack<S, 1>>;
 }

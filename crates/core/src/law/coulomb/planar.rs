@@ -1,7 +1,8 @@
 //! Slip along a line: the contact velocity is piecewise linear in the normal impulse.
 
 use super::{Coulomb, Hypothesis, Sliding};
-use crate::law::{AxialCompliance, Compliant, Components, Response};
+use crate::law::{AxialCompliance, Compliant, Response};
+use crate::math::{Vector, Vectors};
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -22,18 +23,13 @@ impl<S: Simd> Sliding<S> for AxialCompliance<Pack<S, 1>> {
     fn slide(
         &self,
         rule: &Coulomb,
-        velocity: Components<Pack<S, 1>>,
+        velocity: Vectors<S, 1>,
         restitution: Pack<S, 1>,
     ) -> Response<Pack<S, 1>> {
-        let path = PiecewiseLinear::new(self, velocity.along, rule.friction);
-        let (normal, separation_speed) =
-            path.end(velocity.normal.abs(), restitution, rule.hypothesis);
+        let path = PiecewiseLinear::new(self, velocity.x, rule.friction);
+        let (normal, separation_speed) = path.end(velocity.z.abs(), restitution, rule.hypothesis);
         Response {
-            impulse: Components {
-                normal,
-                along: path.friction(normal),
-                across: normal * 0.0,
-            },
+            impulse: Vector::new(path.friction(normal), normal * 0.0, normal),
             separation_speed,
         }
     }

@@ -35,11 +35,11 @@
 //! positive definite, so that each one ends.
 
 use super::{Coulomb, Hypothesis, Sliding, phases::Gain, phases::ImpactSoFar};
-use crate::law::{Compliance, Components, Contact, Frictionless, ImpulseRule, Response};
-use crate::math::Vector;
+use crate::law::{Compliance, Contact, Frictionless, ImpulseRule, Response};
 use crate::math::flat::{cross, half_cotangent, norm, rotate, rotate_back, scalar};
 use crate::math::nodal::{NODES, Nodal, QUADRATURE, dot, each, moments, rows};
 use crate::math::roots::{deflated, largest_root, zeros};
+use crate::math::{Vector, Vectors};
 use crate::simd::elementary::{ln, plain_exp as exp, power_of_two, rough_ln};
 use crate::simd::{Level, Pack, one};
 use pulp::{Scalar, Simd, WithSimd};
@@ -73,7 +73,7 @@ impl Sliding<Scalar> for Compliance {
     fn slide(
         &self,
         rule: &Coulomb,
-        velocity: Components<Pack<Scalar, 1>>,
+        velocity: Vectors<Scalar, 1>,
         restitution: Pack<Scalar, 1>,
     ) -> Response<Pack<Scalar, 1>> {
         if rule.friction == 0.0 {
@@ -83,7 +83,7 @@ impl Sliding<Scalar> for Compliance {
             };
             return Frictionless.respond::<_, true>(&contact, restitution);
         }
-        let velocity = velocity.in_axes();
+        let velocity = velocity.lane(0);
         let approach = velocity.z.abs();
         let size = approach + velocity.x.abs() + velocity.y.abs();
         if size == 0.0 {
@@ -105,7 +105,7 @@ impl Sliding<Scalar> for Compliance {
         let scale = speed_unit / response_unit;
         let [along, across] = rotate_back(axes.first, path.now.friction);
         Response {
-            impulse: Components::in_lane(Vector::new(along, across, path.now.normal) * scale),
+            impulse: (Vector::new(along, across, path.now.normal) * scale).in_lane(),
             separation_speed: one(path.now.speed.max(0.0) * speed_unit),
         }
     }

@@ -16,7 +16,8 @@
 mod tests;
 
 use super::{Coulomb, Hypothesis};
-use crate::law::{Compliant, Components, Contact, ImpulseRule, MOST_CONTACTS, Response};
+use crate::law::{Compliant, Contact, ImpulseRule, MOST_CONTACTS, Response};
+use crate::math::Vector;
 use crate::simd::elementary::{exp_in_lanes, exp_m1_in_lanes, polynomial};
 use crate::simd::{LANES, Mask, Pack};
 use pulp::{Simd, WithSimd};
@@ -1176,7 +1177,7 @@ impl<S: Simd> OngoingImpacts<S> {
         let response = [k.nn(), k.nu(), k.uu(), k.ww()];
         let [nn, nu, uu, ww] = response;
         let speed = contact.approach_speed();
-        let Components { along, across, .. } = contact.velocity;
+        let [along, across, _] = contact.velocity.parts();
         let size = speed + (along.abs() + across.abs());
         let scale = size.eq(0.0).select(1.0, size);
         let unit = 1.0 / scale;
@@ -1285,10 +1286,10 @@ impl<S: Simd> OngoingImpacts<S> {
         // A plastic contact is not left: rounding must not end its stay.
         let plastic = goal.restitution.eq(0.0);
         Response {
-            impulse: Components {
-                normal: course.normal * scale,
-                along: goal.aside.select(0.0, course.along * course.mirror * scale),
-                across: goal.left.select(-course.across, course.across) * scale,
+            impulse: Vector {
+                x: goal.aside.select(0.0, course.along * course.mirror * scale),
+                y: goal.left.select(-course.across, course.across) * scale,
+                z: course.normal * scale,
             },
             separation_speed: plastic.select(0.0, course.v.max(0.0)) * scale,
         }
@@ -1344,7 +1345,7 @@ impl<S: Simd> WithSimd for Turning<'_, S> {
         let mut open = [Mask::splat(self.restitution[0].simd(), false); MOST_CONTACTS];
         let mut waits = false;
         for (i, (contact, &restitution)) in self.contacts.iter().zip(self.restitution).enumerate() {
-            let turns = !contact.velocity.across.eq(0.0);
+            let turns = !contact.velocity.y.eq(0.0);
             let mut impacts = OngoingImpacts::new(contact, restitution, self.rule);
             impacts.stop();
             self.responses[i] = impacts.answer();
