@@ -143,6 +143,15 @@ impl Error {
         }
     }
 
+    /// `Ok` if a value is finite and > 0, else the parameter error.
+    pub(crate) fn unless_positive(
+        name: &'static str,
+        value: f64,
+        allowed: &'static str,
+    ) -> Result<(), Self> {
+        Self::unless(value.is_finite() && value > 0.0, name, value, allowed)
+    }
+
     /// `Ok` if `holds`, else the error of parameters that are too large or small together.
     pub(crate) fn unless_beyond(
         holds: bool,

@@ -27,9 +27,7 @@ impl Scales {
     /// # Errors
     /// Unless gravity is finite and > 0, and if R/g or gR overflows or underflows.
     pub fn new(radius: f64, gravity: f64) -> Result<Self, Error> {
-        let allowed = "finite and > 0 (m/s^2)";
-        let positive = gravity.is_finite() && gravity > 0.0;
-        Error::unless(positive, "gravity", gravity, allowed)?;
+        Error::unless_positive("gravity", gravity, "finite and > 0 (m/s^2)")?;
         // A subnormal number has few digits, and its root is normal again.
         let (time_squared, speed_squared) = (radius / gravity, radius * gravity);
         let representable = time_squared.is_normal() && speed_squared.is_normal();

@@ -145,10 +145,6 @@ pub(super) const FRICTION: Parameter = Parameter::number(
 );
 
 pub(super) fn check_friction(friction: f64) -> Result<(), Error> {
-    Error::unless(
-        (0.0..=MOST_FRICTION).contains(&friction),
-        "friction",
-        friction,
-        "in [0, 1e100]",
-    )
+    let holds = (0.0..=MOST_FRICTION).contains(&friction);
+    Error::unless(holds, "friction", friction, "in [0, 1e100]")
 }

@@ -34,12 +34,7 @@ impl Plastic {
     /// # Errors
     /// [`Error::Parameter`] unless v_y is finite and > 0.
     pub fn new(yield_speed: f64) -> Result<Self, Error> {
-        Error::unless(
-            yield_speed.is_finite() && yield_speed > 0.0,
-            "yield_speed",
-            yield_speed,
-            "finite and > 0 (m/s)",
-        )?;
+        Error::unless_positive("yield_speed", yield_speed, "finite and > 0 (m/s)")?;
         Ok(Self { yield_speed })
     }
 

@@ -50,13 +50,8 @@ impl Scattered {
         let nested = matches!(around, Material::Scattered(_));
         let allowed = "a coefficient that does not scatter itself";
         Error::unless(!nested, "normal", around.deviation(), allowed)?;
-        let allowed = "in [0, 1]";
-        Error::unless(
-            (0.0..=1.0).contains(&deviation),
-            "deviation",
-            deviation,
-            allowed,
-        )?;
+        let holds = (0.0..=1.0).contains(&deviation);
+        Error::unless(holds, "deviation", deviation, "in [0, 1]")?;
         Ok(Self {
             around: Box::new(around),
             deviation,

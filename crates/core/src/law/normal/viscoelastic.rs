@@ -80,32 +80,13 @@ impl Viscoelastic {
         density: f64,
         radius: f64,
     ) -> Result<Self, Error> {
-        let positive = |x: f64| x.is_finite() && x > 0.0;
-        Error::unless(
-            positive(young_modulus),
-            "young_modulus",
-            young_modulus,
-            "finite and > 0 (Pa)",
-        )?;
-        Error::unless(
-            poisson_ratio > -1.0 && poisson_ratio <= 0.5,
-            "poisson_ratio",
-            poisson_ratio,
-            "in (-1, 0.5]",
-        )?;
-        Error::unless(
-            dissipation.is_finite() && dissipation >= 0.0,
-            "dissipation",
-            dissipation,
-            "finite and >= 0 (s)",
-        )?;
-        Error::unless(
-            positive(density),
-            "density",
-            density,
-            "finite and > 0 (kg/m^3)",
-        )?;
-        Error::unless(positive(radius), "radius", radius, "finite and > 0 (m)")?;
+        Error::unless_positive("young_modulus", young_modulus, "finite and > 0 (Pa)")?;
+        let holds = poisson_ratio > -1.0 && poisson_ratio <= 0.5;
+        Error::unless(holds, "poisson_ratio", poisson_ratio, "in (-1, 0.5]")?;
+        let holds = dissipation.is_finite() && dissipation >= 0.0;
+        Error::unless(holds, "dissipation", dissipation, "finite and >= 0 (s)")?;
+        Error::unless_positive("density", density, "finite and > 0 (kg/m^3)")?;
+        Error::unless_positive("radius", radius, "finite and > 0 (m)")?;
         let stiffness = young_modulus
             / (PI
                 * (1.0 - poisson_ratio * poisson_ratio)
