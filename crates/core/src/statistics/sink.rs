@@ -51,7 +51,8 @@ pub(crate) struct HistogramSink<'a, const EVEN: bool, const MOMENTS: bool> {
 struct Queue {
     /// Sites in the grid of ε, of impacts that are only counted.
     sites: [f64; PLACES],
-    places: [Counted; PLACES],
+    /// Sites in the grids of ε and of E_rot/E_tot, the row, and ε itself.
+    places: [[f64; 4]; PLACES],
     /// Contributions to the sums, in halves.
     low: [Half; PLACES],
     high: [Half; PLACES],
@@ -103,9 +104,6 @@ impl Recently {
         full
     }
 }
-
-/// The place at which an impact is counted: indices into the grids of ε and of E_rot/E_tot, and the row; the last number is ε.
-type Counted = [f64; 4];
 
 /// Transposes four packs into one record of four numbers for each lane.
 #[inline(always)]
@@ -300,28 +298,25 @@ impl<const EVEN: bool, const MOMENTS: bool> ImpactSink for HistogramSink<'_, EVE
         let restitution = impact.restitution();
         let fraction = impact.rotational_fraction();
         let (columns, fractions) = (self.columns, self.fractions);
-        let (row, column, fraction_column) = match self.by {
-            By::Velocity(axis) if MOMENTS => {
-                let velocity = impact.fall * self.speed;
-                let located = Axis::locate::<S, _, EVEN>(
-                    [axis, columns, fractions],
-                    [velocity, restitution, fraction],
-                );
-                (located[0], located[1], located[2])
-            }
+        let [row, column, fraction_column] = match self.by {
+            By::Velocity(axis) if MOMENTS => Axis::locate::<S, _, EVEN>(
+                [axis, columns, fractions],
+                [impact.fall * self.speed, restitution, fraction],
+            ),
             By::Velocity(axis) => {
                 let velocity = impact.fall * self.speed;
-                let located = Axis::locate::<S, _, EVEN>([axis, columns], [velocity, restitution]);
-                (located[0], located[1], fraction)
+                let [row, column] =
+                    Axis::locate::<S, _, EVEN>([axis, columns], [velocity, restitution]);
+                [row, column, fraction]
             }
             By::Number(_) if MOMENTS => {
-                let located =
+                let [column, fraction] =
                     Axis::locate::<S, _, EVEN>([columns, fractions], [restitution, fraction]);
-                (number + ROUND, located[0], located[1])
+                [number + ROUND, column, fraction]
             }
             By::Number(_) => {
                 let [column] = Axis::locate::<S, _, EVEN>([columns], [restitution]);
-                (number + ROUND, column, fraction)
+                [number + ROUND, column, fraction]
             }
         };
         let gaining = active & (impact.energy_before * CREATES_ENERGY).lt(impact.energy_after);
