@@ -93,12 +93,6 @@ impl<S: Simd> AxialCompliance<Pack<S, 1>> {
         -(self.arm_normal * self.arm_along) * (1.0 / self.inertia)
     }
 
-    /// K_ww.
-    #[inline(always)]
-    pub fn ww(&self) -> Pack<S, 1> {
-        self.ww
-    }
-
     /// K_nn − K_nu²/K_uu: change of the normal contact velocity per normal impulse while the contact sticks.
     #[inline(always)]
     pub fn sticking(&self) -> Pack<S, 1> {

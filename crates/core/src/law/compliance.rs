@@ -13,7 +13,7 @@ use std::ops::Add;
 /// Of two bodies, with **v**_c the velocity of the first relative to the second, it is the sum of theirs; a plane at rest, the body of
 /// infinite mass, adds nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Compliance(Symmetric);
+pub struct Compliance(pub(super) Symmetric);
 
 impl Compliance {
     /// The compliance with these entries.
@@ -24,19 +24,9 @@ impl Compliance {
         let [first, second, third] = Factors::new(&entries).pivots;
         let size = entries.xx + entries.yy + entries.zz;
         let holds = first > 0.0 && second > 0.0 && third > 0.0 && size < f64::INFINITY;
-        Error::unless(
-            holds,
-            "compliance",
-            first.min(second).min(third),
-            "finite and positive definite",
-        )?;
+        let (least, allowed) = (first.min(second).min(third), "finite and positive definite");
+        Error::unless(holds, "compliance", least, allowed)?;
         Ok(Self(entries))
-    }
-
-    /// The compliance with these entries, of a body that has one.
-    #[inline(always)]
-    pub(super) fn of_entries(entries: Symmetric) -> Self {
-        Self(entries)
     }
 
     /// I/m + \[**r**\]ᵀJ⁻¹\[**r**\]: that of a body with mass m and the inverse tensor of inertia J⁻¹, hit at **r** from its centre of mass.

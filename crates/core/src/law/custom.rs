@@ -124,8 +124,8 @@ impl AxialCompliance {
     /// The full matrix, where **u** has these components along x and y.
     fn turned(&self, [x, y]: [f64; 2]) -> Compliance {
         let k = self.map(one);
-        let [nn, uu, nu, ww] = [k.nn(), k.uu(), k.nu(), k.ww()].map(|entry| entry.as_slice()[0]);
-        Compliance::of_entries(Symmetric {
+        let [nn, uu, nu, ww] = [k.nn(), k.uu(), k.nu(), k.ww].map(|entry| entry.as_slice()[0]);
+        Compliance(Symmetric {
             xx: uu * x * x + ww * y * y,
             yy: uu * y * y + ww * x * x,
             zz: nn,

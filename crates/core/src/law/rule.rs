@@ -229,16 +229,11 @@ impl<S: Simd, const SPACE: bool> WithSimd for Choice<'_, '_, S, SPACE> {
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _: T) {
-        let Self {
-            law,
-            contacts,
-            chances,
-            responses,
-        } = self;
+        let (law, contacts) = (self.law, self.contacts);
         let simd = contacts[0].velocity.z.simd();
         let mut normal = [Pack::splat(simd, 0.0); MOST_CONTACTS];
         for (i, contact) in contacts.iter().enumerate() {
-            let chances = law.scatters().then(|| chances[i]);
+            let chances = law.scatters().then(|| self.chances[i]);
             normal[i] = law.coefficient(contact.approach_speed(), chances);
         }
         match &law.rule {
@@ -246,9 +241,9 @@ impl<S: Simd, const SPACE: bool> WithSimd for Choice<'_, '_, S, SPACE> {
                 rule,
                 contacts,
                 restitution: &normal,
-                responses,
+                responses: self.responses,
             }),
-            rule => rule.respond_all::<S, SPACE>(contacts, &normal, responses),
+            rule => rule.respond_all::<S, SPACE>(contacts, &normal, self.responses),
         }
     }
 }

@@ -219,11 +219,7 @@ impl<S: Simd, const K: usize> Vectors<S, K> {
     /// The vector in a lane.
     #[inline(always)]
     pub(crate) fn lane(&self, lane: usize) -> Vector {
-        Vector {
-            x: self.x.as_slice()[lane],
-            y: self.y.as_slice()[lane],
-            z: self.z.as_slice()[lane],
-        }
+        self.map(|part| part.as_slice()[lane])
     }
 
     #[inline(always)]

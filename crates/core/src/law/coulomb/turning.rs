@@ -964,12 +964,8 @@ impl<S: Simd> Near<S> {
 // ========================================================================================================
 // Where the slip vanishes: the impulse until then as a continued fraction
 //
-// With **u** taken the right way the direction tends to a fixed one, y → y*: to y* = 0 where ρ₊ ≥ 0, else to y* = −ρ₊/ρ₋. With
-// D = y − y*, σ = |ρ₊| and λ* = λ + κy*
-//
-// dD/dθ = −2D(σ + ρ₋D), d ln A/dθ = −λ* − κD,
-//
-// and the integrals ∫A Dʲ dθ over the rest of the way are hypergeometric functions of −ρ₋D/σ; ∫A dθ, for one, is
+// With **u** taken the right way the direction tends to a fixed one, y → y*: to y* = 0 where ρ₊ ≥ 0, else to y* = −ρ₊/ρ₋. With D and λ* as
+// for the hodograph, whose equations hold with σ = |ρ₊|, the integrals ∫A Dʲ dθ over the rest of the way are hypergeometric functions of −ρ₋D/σ; ∫A dθ, for one, is
 // (A/λ*) ₂F₁(κ/2ρ₋, 1; λ*/2σ + 1; −ρ₋D/σ). C. F. Gauss's continued fraction of it, multiplied by its denominators so that none
 // can vanish, consists of
 //
@@ -1174,7 +1170,7 @@ impl<S: Simd> OngoingImpacts<S> {
         let simd = restitution.simd();
         let zero = Pack::splat(simd, 0.0);
         let k = &contact.compliance;
-        let response = [k.nn(), k.nu(), k.uu(), k.ww()];
+        let response = [k.nn(), k.nu(), k.uu(), k.ww];
         let [nn, nu, uu, ww] = response;
         let speed = contact.approach_speed();
         let [along, across, _] = contact.velocity.parts();
