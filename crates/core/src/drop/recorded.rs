@@ -128,7 +128,7 @@ variables! {
         unit: Some("1"),
         symbol: Some("ε_n"),
         when: When::NormalVaries
-    } = |impact, plan| plan.law.normal.apart(impact.approach);
+    } = |impact, plan| plan.law.normal.apart(impact.approach, None);
 
     rotational_fraction: f64 {
         text: "rotational over total kinetic energy, before the impact (Eq. 12)",

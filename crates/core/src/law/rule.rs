@@ -2,7 +2,7 @@
 
 use super::{
     Compliance, Contact, CustomLaw, Frictionless, ImpulseFunction, MOST_CONTACTS, Material, Normal,
-    Respond, Response, Rule, coulomb::Turning, normal::scattered, tangential::Steady,
+    Respond, Response, Rule, coulomb::Turning, tangential::Steady,
 };
 use crate::Error;
 use crate::Fault;
@@ -167,10 +167,9 @@ impl<'a> Law<'a> {
         speed: Pack<S, 1>,
         chances: Option<Pack<S, 1>>,
     ) -> Pack<S, 1> {
-        let normal = self.normal.in_lanes(speed);
         match chances {
-            Some(chances) => scattered(normal, self.deviation, chances),
-            None => normal,
+            Some(chances) => self.normal.apart(speed, Some((self.deviation, chances))),
+            None => self.normal.in_lanes(speed),
         }
     }
 

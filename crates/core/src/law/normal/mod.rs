@@ -8,14 +8,14 @@ mod viscoelastic;
 
 pub use plastic::Plastic;
 pub use scattered::Scattered;
-pub(crate) use scattered::scattered;
+use scattered::truncated;
 pub use tabulated::{Points, Tabulated};
 pub use viscoelastic::{PADE_ABOVE, PADE_BELOW, Viscoelastic};
 
 use crate::Error;
 use crate::describe::Kind;
-use crate::simd::Pack;
-use pulp::{Scalar, Simd, WithSimd};
+use crate::simd::{Pack, one};
+use pulp::{Simd, WithSimd};
 
 /// The normal coefficient of restitution ε_n, in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,13 +78,12 @@ impl Normal<'_> {
     /// The coefficient at a speed ≥ 0, in m/s, or in the core's unit of speed if it was scaled.
     #[inline(always)]
     pub fn at(&self, speed: f64) -> f64 {
-        self.in_lanes(Pack::<_, 1>::splat(Scalar::new(), speed))
-            .as_slice()[0]
+        self.in_lanes(one(speed)).as_slice()[0]
     }
 
     /// [`Self::at`] in every lane.
     #[inline(always)]
-    pub(crate) fn in_lanes<S: Simd, const K: usize>(&self, speed: Pack<S, K>) -> Pack<S, K> {
+    pub(crate) fn in_lanes<S: Simd>(&self, speed: Pack<S, 1>) -> Pack<S, 1> {
         match self {
             Self::Constant(value) => Pack::splat(speed.simd(), *value),
             Self::Viscoelastic(material) => material.in_lanes(speed),
@@ -93,12 +92,18 @@ impl Normal<'_> {
         }
     }
 
-    /// [`Self::in_lanes`] in a function of its own: inlined, all coefficients together would use up the registers of the bounce loop.
+    /// [`Self::in_lanes`] in a function of its own: inlined, all coefficients together would use up the registers of the bounce loop. With
+    /// a standard deviation and numbers in (0, 1) they scatter: they are quantiles of the normal distribution about it, truncated to [0, 1].
     #[inline(always)]
-    pub(crate) fn apart<S: Simd, const K: usize>(&self, speed: Pack<S, K>) -> Pack<S, K> {
+    pub(crate) fn apart<S: Simd>(
+        &self,
+        speed: Pack<S, 1>,
+        scatter: Option<(f64, Pack<S, 1>)>,
+    ) -> Pack<S, 1> {
         speed.simd().vectorize(Coefficients {
             normal: self,
             speed,
+            scatter,
         })
     }
 
@@ -122,17 +127,24 @@ impl Normal<'_> {
 }
 
 /// A coefficient and the speeds at which it is evaluated, compiled for each SIMD level.
-struct Coefficients<'a, 'b, S: Simd, const K: usize> {
+struct Coefficients<'a, 'b, S: Simd> {
     normal: &'a Normal<'b>,
-    speed: Pack<S, K>,
+    speed: Pack<S, 1>,
+    scatter: Option<(f64, Pack<S, 1>)>,
 }
 
-impl<S: Simd, const K: usize> WithSimd for Coefficients<'_, '_, S, K> {
-    type Output = Pack<S, K>;
+impl<S: Simd> WithSimd for Coefficients<'_, '_, S> {
+    type Output = Pack<S, 1>;
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _: T) -> Self::Output {
-        self.normal.in_lanes(self.speed)
+        let mut normal = self.normal.in_lanes(self.speed);
+        if let Some((deviation, chances)) = self.scatter {
+            for (normal, &u) in normal.as_mut_slice().iter_mut().zip(chances.as_slice()) {
+                *normal = truncated(*normal, deviation, u);
+            }
+        }
+        normal
     }
 }
 

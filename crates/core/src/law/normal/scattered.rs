@@ -4,8 +4,6 @@ use super::Material;
 use crate::Error;
 use crate::describe::{Arguments, Interval, Kind, Parameter};
 use crate::math::gaussian::{quantile, tail};
-use crate::simd::Pack;
-use pulp::{Simd, WithSimd};
 
 /// ε_n with the normal distribution of this deviation about another coefficient, truncated to [0, 1], and drawn anew for every impact.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,47 +67,9 @@ impl Scattered {
     }
 }
 
-/// The coefficients about these middles, drawn with numbers in (0, 1): quantiles of the truncated normal distribution. In a function of
-/// its own, because it is rare.
-#[inline(always)]
-pub(crate) fn scattered<S: Simd>(
-    middle: Pack<S, 1>,
-    deviation: f64,
-    chance: Pack<S, 1>,
-) -> Pack<S, 1> {
-    middle.simd().vectorize(Draw {
-        middle,
-        deviation,
-        chance,
-    })
-}
-
-struct Draw<S: Simd> {
-    middle: Pack<S, 1>,
-    deviation: f64,
-    chance: Pack<S, 1>,
-}
-
-impl<S: Simd> WithSimd for Draw<S> {
-    type Output = Pack<S, 1>;
-
-    #[inline(always)]
-    fn with_simd<T: Simd>(mut self, _: T) -> Self::Output {
-        for (x, &u) in self
-            .middle
-            .as_mut_slice()
-            .iter_mut()
-            .zip(self.chance.as_slice())
-        {
-            *x = truncated(*x, self.deviation, u);
-        }
-        self.middle
-    }
-}
-
 /// The quantile of u in (0, 1) of the normal distribution about a middle in [0, 1], truncated to [0, 1].
 #[inline(always)]
-fn truncated(middle: f64, deviation: f64, u: f64) -> f64 {
+pub(super) fn truncated(middle: f64, deviation: f64, u: f64) -> f64 {
     let below = tail(middle / deviation);
     let above = tail((1.0 - middle) / deviation);
     let inside = 1.0 - below - above;
