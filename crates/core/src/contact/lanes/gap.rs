@@ -174,7 +174,7 @@ impl<S: Simd, F: Flight<S, 1>> Search<S, F> {
         let instant = self.beginning();
         let on = self.last_contact.sphere;
         let part = hull.part(!on.lt(0.0));
-        let held = !on.eq(0.0) & hull.curvature(&part, &instant.axis_motion, -1.0).le(0.0);
+        let held = !on.eq(0.0) & hull.curvature(&part, &instant.axis_motion).le(0.0);
         if H::TWO {
             let (_, still) = instant.opening(&part, hull);
             let other = self.gap(&instant, hull.part(on.lt(0.0)), hull);

@@ -121,7 +121,7 @@ impl<S: Simd, F: Flight<S, 1>> Search<S, F> {
             attitude,
             width,
             rate,
-            curvature: hull.curvature(part, &self.flight.axis_motion(attitude), -1.0),
+            curvature: hull.curvature(part, &self.flight.axis_motion(attitude)),
         }
     }
 

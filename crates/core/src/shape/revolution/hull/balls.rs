@@ -178,13 +178,8 @@ impl<const TWO: bool, const EQUAL: bool> Hull for Balls<TWO, EQUAL> {
     }
 
     #[inline(always)]
-    fn curvature<S: Simd>(
-        &self,
-        part: &HullPart<S>,
-        axis_motion: &AxisMotion<S, 1>,
-        addend: f64,
-    ) -> Pack<S, 1> {
-        part.own.mul_add(axis_motion.acceleration, addend)
+    fn curvature<S: Simd>(&self, part: &HullPart<S>, axis_motion: &AxisMotion<S, 1>) -> Pack<S, 1> {
+        part.own.mul_add(axis_motion.acceleration, -1.0)
     }
 
     #[inline(always)]

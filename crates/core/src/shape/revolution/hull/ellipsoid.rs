@@ -160,17 +160,12 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn curvature<S: Simd>(
-        &self,
-        _: &HullPart<S>,
-        axis_motion: &AxisMotion<S, 1>,
-        addend: f64,
-    ) -> Pack<S, 1> {
+    fn curvature<S: Simd>(&self, _: &HullPart<S>, axis_motion: &AxisMotion<S, 1>) -> Pack<S, 1> {
         let inverse = self.inverse(axis_motion.cos_tilt);
         let (e, v) = (axis_motion.cos_tilt, axis_motion.rate);
         let first = self.excess * (e * v) * inverse; // h′
         let second = self.excess * e.mul_add(axis_motion.acceleration, v * v); // D(e²/2)″
-        (first.mul_add(first, -second)).mul_add(inverse, addend)
+        (first.mul_add(first, -second)).mul_add(inverse, -1.0)
     }
 
     #[inline(always)]

@@ -135,13 +135,8 @@ pub(crate) trait Hull: Copy {
     /// The radius ϱ = h − e_z dh/de_z of the sphere that touches like this part.
     fn radius<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1>;
 
-    /// −d²h/dt² + `addend`.
-    fn curvature<S: Simd>(
-        &self,
-        part: &HullPart<S>,
-        axis_motion: &AxisMotion<S, 1>,
-        addend: f64,
-    ) -> Pack<S, 1>;
+    /// d²f/dt² = −1 − d²h/dt² of the gap f in free fall.
+    fn curvature<S: Simd>(&self, part: &HullPart<S>, axis_motion: &AxisMotion<S, 1>) -> Pack<S, 1>;
 
     /// −d²h/dt², −d³h/dt³ and −d⁴h/dt⁴ where [`Hull::nearer`] was asked for the part.
     fn derivatives<S: Simd>(
