@@ -17,7 +17,7 @@ mod row;
 pub use moments::{BIN, BINS, GAS_KIND, GAS_WHOLE};
 
 use crate::law::Law;
-use crate::math::{Quaternion, Vector};
+use crate::math::{Quaternion, Vector, add_to};
 use crate::pair::{
     Approach, DrawRows, Ending, Follower, FreeBody, Outcome, PairState, Partner, Trouble, failed,
     normals,
@@ -27,7 +27,7 @@ use crate::simd::{LANES, Level};
 use crate::threads::{Monitor, Resources};
 use crate::{Error, memory};
 use meeting::{Candidate, Candidates, MeetingLine};
-use moments::{Distributions, SpeciesSums, Whole};
+use moments::{Whole, distributions, moments};
 use pulp::{Simd, WithSimd};
 use row::{CandidateRow, ROW, WAITS, bound};
 use std::f64::consts::{PI, TAU};
@@ -345,9 +345,9 @@ impl<'a> Batch<'a> {
                 }
                 let mut draws = rows.row(i % DRAWN);
                 let attitude = draws.attitude();
-                let [x, y, z] = draws.normals();
+                let normals = Vector::from(draws.normals());
                 let thermal = (kind.translational * body.inverse_mass).sqrt();
-                velocities.push(Vector::new(x, y, z) * thermal);
+                velocities.push(normals * thermal);
                 rotations.push(ParticleRotation {
                     attitude: attitude * body.axes,
                     spin: draws.spin(body, kind.rotational),
@@ -415,7 +415,7 @@ impl<'a> Batch<'a> {
         let always = self.gas.heating > 0.0;
         let (mut clock, mut count) = (self.clock, 0);
         for place in start..end {
-            let ([i, j], _) = self.ahead.get(place);
+            let ([i, j], _, part) = self.ahead.get(place);
             let (one, two) = (self.bounds[i], self.bounds[j]);
             if one == WAITS || two == WAITS || count == most || clock > self.until {
                 return (place, clock, count);
@@ -423,7 +423,7 @@ impl<'a> Batch<'a> {
             clock += between;
             // If not, u is certainly less than this part of its majorant. Nobody could foresee which way a branch would go: with one, a collision of
             // spheres takes a tenth longer.
-            let may = u32::from(one) + u32::from(two) > self.ahead.part(place) || always;
+            let may = u32::from(one) + u32::from(two) > part || always;
             self.bounds[i] = if may { WAITS } else { one };
             self.bounds[j] = if may { WAITS } else { two };
             self.sieved[count] = (place, clock);
@@ -500,7 +500,7 @@ impl<'a> Batch<'a> {
             let mut sum = 0.0;
             for (place, time) in self.sieved.into_iter().take(count) {
                 (self.candidates, self.clock) = (row + place as u64 + 1, time);
-                let (pair, chance) = self.ahead.get(place);
+                let (pair, chance, _) = self.ahead.get(place);
                 if gas.heating > 0.0 {
                     self.heat(pair[0], HEATED[0]);
                     self.heat(pair[1], HEATED[1]);
@@ -790,8 +790,8 @@ impl<'a> Batch<'a> {
             if turned != [false; 3] {
                 // Rounding would turn a body about the others, too, and that would outlast all else.
                 let (own, before) = (state.spin.parts(), before.spin.parts());
-                let [x, y, z] = std::array::from_fn(|k| if turned[k] { own[k] } else { before[k] });
-                let spin = Vector::new(x, y, z);
+                let parts = std::array::from_fn(|k| if turned[k] { own[k] } else { before[k] });
+                let spin = Vector::from(parts);
                 self.rotations[i] = ParticleRotation::new(&FreeBody { spin, ..*state }, time);
             }
         }
@@ -838,11 +838,11 @@ impl<'a> Batch<'a> {
     fn heat(&mut self, particle: usize, draw: u32) {
         let number = self.number(self.candidates);
         let drawn = [draw, draw + 1].map(|draw| of_candidate(self.gas.seed, number, draw));
-        let [x, y, z] = normals(drawn);
+        let normals = Vector::from(normals(drawn));
         let noise = self.gas.noise(self.kind(particle).body.inverse_mass);
         let (v, heated) = (&mut self.velocities[particle], &mut self.heated[particle]);
         let deviation = (noise * (self.clock - *heated)).sqrt();
-        *v = *v + Vector::new(x, y, z) * deviation;
+        *v = *v + normals * deviation;
         *heated = self.clock;
     }
 
@@ -880,19 +880,19 @@ impl<'a> Batch<'a> {
         rows.extend(self.whole.row(self.time(), self.exponent));
         let mut start = 0;
         for (kind, &end) in self.gas.kinds.iter().zip(&self.ends) {
-            let mut sums = SpeciesSums::default();
+            let mut sums = [0.0; GAS_KIND.len()];
             for i in start..end {
                 let mut state = self.free(i, Vector::default());
                 let passed = self.clock - self.rotations[i].time;
                 state.turn(kind.body, within(passed, state.spin.norm()));
                 self.rotations[i] = ParticleRotation::new(&state, self.clock);
-                sums.add(kind, &state);
+                add_to(&mut sums, moments(kind, &state));
             }
             let count = end - start;
-            rows.extend(sums.row(count as f64));
+            rows.extend(sums.map(|sum| sum / count as f64));
             if self.gas.distributions {
                 let own = |i: usize| self.free(start + i, Vector::default());
-                rows.extend(Distributions::new(kind, count, own).row());
+                rows.extend(distributions(kind, count, own).as_flattened());
             }
             start = end;
         }
@@ -982,9 +982,7 @@ fn settle(velocities: &mut [Vector], rotations: &mut [ParticleRotation], kind: &
     }
     let mut turning = [0.0; 3];
     for p in rotations.iter() {
-        for (sum, part) in turning.iter_mut().zip(p.spin.parts()) {
-            *sum += part * part;
-        }
+        add_to(&mut turning, p.spin.parts().map(|part| part * part));
     }
     let wanted = 3.0 * count * kind.translational * body.inverse_mass;
     let scale = (wanted / square).sqrt();

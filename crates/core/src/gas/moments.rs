@@ -1,7 +1,7 @@
 //! The record of a gas: counts since the beginning, and moments of each kind of bodies.
 
 use super::Species;
-use crate::math::Vector;
+use crate::math::{Vector, add_to};
 use crate::pair::{FreeBody, PairState};
 
 /// Columns of a look at a gas, in SI units: pairs within reach of each other, encounters with contact, their contacts, those that ended as a collapse and
@@ -90,51 +90,37 @@ impl Whole {
     }
 }
 
-/// Sums over the bodies of a kind.
-#[derive(Debug, Default)]
-pub struct SpeciesSums([f64; GAS_KIND.len()]);
-
-impl SpeciesSums {
-    /// Adds a body.
-    #[inline(always)]
-    pub fn add(&mut self, kind: &Species<'_>, state: &FreeBody) {
-        let velocity = state.velocity;
-        let ([x, y, z], turning) = rotation(kind, state);
-        let square = velocity.dot(velocity);
-        let cosine = |other: Vector| {
-            let size = square * other.dot(other);
-            let along = velocity.dot(other);
-            if size > 0.0 {
-                along * along / size
-            } else {
-                0.0
-            }
-        };
-        let PairState { attitude, spin, .. } = state.state(kind.body);
-        let axis = attitude.rotate(Vector::new(0.0, 0.0, 1.0));
-        let row = [
-            square,
-            square * square,
-            x,
-            y,
-            z,
-            turning * turning,
-            square * turning,
-            cosine(spin),
-            cosine(axis),
-            velocity.x,
-            velocity.y,
-            velocity.z,
-        ];
-        for (sum, value) in self.0.iter_mut().zip(row) {
-            *sum += value;
+/// [`GAS_KIND`] of one body.
+#[inline(always)]
+pub fn moments(kind: &Species<'_>, state: &FreeBody) -> [f64; GAS_KIND.len()] {
+    let velocity = state.velocity;
+    let ([x, y, z], turning) = rotation(kind, state);
+    let square = velocity.dot(velocity);
+    let cosine = |other: Vector| {
+        let size = square * other.dot(other);
+        let along = velocity.dot(other);
+        if size > 0.0 {
+            along * along / size
+        } else {
+            0.0
         }
-    }
-
-    /// [`GAS_KIND`], the means over so many bodies.
-    pub fn row(&self, count: f64) -> [f64; GAS_KIND.len()] {
-        self.0.map(|sum| sum / count)
-    }
+    };
+    let PairState { attitude, spin, .. } = state.state(kind.body);
+    let axis = attitude.rotate(Vector::new(0.0, 0.0, 1.0));
+    [
+        square,
+        square * square,
+        x,
+        y,
+        z,
+        turning * turning,
+        square * turning,
+        cosine(spin),
+        cosine(axis),
+        velocity.x,
+        velocity.y,
+        velocity.z,
+    ]
 }
 
 /// The energies of rotation about the principal axes, and their sum over those about which contacts turn the body.
@@ -147,35 +133,30 @@ fn rotation(kind: &Species<'_>, state: &FreeBody) -> ([f64; 3], f64) {
     (each, turned(0) + turned(1) + turned(2))
 }
 
-/// The bodies of a kind in bins of v over its root mean square, and of (E_rot/⟨E_rot⟩)^(1/2), E_rot about the axes that contacts turn.
-pub struct Distributions([[f64; BINS]; 2]);
-
-impl Distributions {
-    /// Those of some bodies, each of which is asked for twice.
-    pub fn new(kind: &Species<'_>, count: usize, state: impl Fn(usize) -> FreeBody) -> Self {
-        let squares = |i: usize| {
-            let state = state(i);
-            let velocity = state.velocity;
-            [velocity.dot(velocity), rotation(kind, &state).1]
-        };
-        let mut sums = [0.0; 2];
-        for [v, energy] in (0..count).map(squares) {
-            sums = [sums[0] + v, sums[1] + energy];
-        }
-        let mut bins = [[0.0; BINS]; 2];
-        for both in (0..count).map(squares) {
-            for ((square, sum), bins) in both.into_iter().zip(sums).zip(&mut bins) {
-                let place = (square * count as f64 / sum).sqrt() / BIN;
-                if let Some(bin) = bins.get_mut(place as usize) {
-                    *bin += 1.0;
-                }
+/// The bodies of a kind, each of which is asked for twice, in bins of v over its root mean square, and of (E_rot/⟨E_rot⟩)^(1/2), E_rot about the
+/// axes that contacts turn.
+pub fn distributions(
+    kind: &Species<'_>,
+    count: usize,
+    state: impl Fn(usize) -> FreeBody,
+) -> [[f64; BINS]; 2] {
+    let squares = |i: usize| {
+        let state = state(i);
+        let velocity = state.velocity;
+        [velocity.dot(velocity), rotation(kind, &state).1]
+    };
+    let mut sums = [0.0; 2];
+    for both in (0..count).map(squares) {
+        add_to(&mut sums, both);
+    }
+    let mut bins = [[0.0; BINS]; 2];
+    for both in (0..count).map(squares) {
+        for ((square, sum), bins) in both.into_iter().zip(sums).zip(&mut bins) {
+            let place = (square * count as f64 / sum).sqrt() / BIN;
+            if let Some(bin) = bins.get_mut(place as usize) {
+                *bin += 1.0;
             }
         }
-        Self(bins)
     }
-
-    /// The counts.
-    pub fn row(&self) -> &[f64] {
-        self.0.as_flattened()
-    }
+    bins
 }

@@ -43,18 +43,12 @@ impl CandidateRow {
         parts: [0; ROW],
     };
 
-    /// The candidate in a place.
+    /// The candidate in a place, with what decides it as it is, and in [`PARTS`], rounded down.
     #[inline(always)]
-    pub fn get(&self, place: usize) -> ([usize; 2], f64) {
+    pub fn get(&self, place: usize) -> ([usize; 2], f64, u32) {
         let [first, second] = &self.pairs;
         let pair = [first[place] as usize, second[place] as usize];
-        (pair, self.chances[place])
-    }
-
-    /// What decides the candidate in a place, in [`PARTS`], rounded down.
-    #[inline(always)]
-    pub fn part(&self, place: usize) -> u32 {
-        self.parts[place]
+        (pair, self.chances[place], self.parts[place])
     }
 
     /// Draws the row that begins with this number, of so many particles, if it is not there.
@@ -127,8 +121,8 @@ mod tests {
                 let pair = (which * (particles as u64 * others) as f64) as u64;
                 let (i, j) = (pair / others, pair % others);
                 let j = if j < i { j } else { j + 1 };
-                assert_eq!(row.get(place), ([i as usize, j as usize], chance));
-                assert_eq!(row.part(place), (PARTS * chance) as u32);
+                let pair = [i as usize, j as usize];
+                assert_eq!(row.get(place), (pair, chance, (PARTS * chance) as u32));
             }
         }
     }

@@ -93,6 +93,13 @@ impl<T: Copy> Vector<T> {
     }
 }
 
+impl<T> From<[T; 3]> for Vector<T> {
+    #[inline(always)]
+    fn from([x, y, z]: [T; 3]) -> Self {
+        Self { x, y, z }
+    }
+}
+
 impl<T: Part> Vector<T> {
     /// Scalar product.
     #[inline(always)]

@@ -236,10 +236,7 @@ impl PairTable {
             .map(|name| numbers(name).as_chunks::<3>().0.to_vec());
         let attitudes = numbers("attitude");
         let state = |i: usize, &[w, x, y, z]: &[f64; 4]| {
-            let [position, velocity, spin] = [0, 1, 2].map(|k| {
-                let [x, y, z] = columns[k][i];
-                Vector::new(x, y, z)
-            });
+            let [position, velocity, spin] = [0, 1, 2].map(|k| Vector::from(columns[k][i]));
             PairState {
                 position,
                 velocity,

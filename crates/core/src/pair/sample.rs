@@ -167,8 +167,8 @@ impl Encounters<'_> {
                 let (a, b) = draws.pair();
                 let speed = (-2.0 * self.variance() * ln((1.0 - a) * (1.0 - b))).sqrt();
                 let [s1, s2] = [temperatures[0] * one, temperatures[1] * two];
-                let [x, y, z] = draws.normals();
-                (speed, Vector::new(x, y, z) * (s1 * s2 / (s1 + s2)).sqrt())
+                let normals = Vector::from(draws.normals());
+                (speed, normals * (s1 * s2 / (s1 + s2)).sqrt())
             }
         };
         // With weights that make the rest independent of u.
@@ -299,8 +299,7 @@ impl Draws<'_> {
     pub fn spin(&mut self, body: &Partner, temperatures: [f64; 3]) -> Vector {
         let normals = self.normals();
         let part = |i: usize| normals[i] * (temperatures[i] * body.inverse_moments[i]).sqrt();
-        let [x, y, z] = [part(0), part(1), part(2)];
-        Vector::new(x, y, z)
+        Vector::new(part(0), part(1), part(2))
     }
 
     /// An attitude, uniform on SO(3): K. Shoemake, *Uniform random rotations*, Graphics Gems III (1992).

@@ -1,5 +1,6 @@
 //! Clumps: unions of balls.
 
+use super::pieces::Extent;
 use super::rigid::{CENTRE, Rigid, RigidBall, TENSOR};
 use super::union::{sum, union};
 use super::{BodyKind, Form, check_density};
@@ -67,7 +68,8 @@ impl Rigid {
             Matter::Union => union(balls)?,
             Matter::Sum => sum(balls),
         };
-        Self::of_balls(moments.inertia(density), "spheres", balls.iter().copied())
+        let parts = balls.iter().copied();
+        Self::of_balls(moments.inertia(density), "spheres", Extent::Balls, parts)
     }
 }
 

@@ -36,8 +36,7 @@ fn cyclic(x: f64, y: f64) -> impl Iterator<Item = Vector> {
         signs.map(|[a, b]| {
             let mut place = [0.0, a * x, b * y];
             place.rotate_right(shift);
-            let [x, y, z] = place;
-            Vector::new(x, y, z)
+            Vector::from(place)
         })
     })
 }

@@ -1,5 +1,6 @@
 //! Ellipsoids.
 
+use super::pieces::Extent;
 use super::rigid::{CENTRE, Inertia, Rigid, TENSOR};
 use super::surface::{Convex, EllipsoidSurface};
 use super::{BodyKind, Form, check_density};
@@ -54,8 +55,8 @@ impl Rigid {
             ]),
         };
         let unit = a.max(b).max(c);
-        let surface = EllipsoidSurface(semi_axes.map(|axis| axis / unit));
-        Self::new(inertia, unit, |_| Ok(Convex::new(surface).into()))
+        let surface = Convex::new(EllipsoidSurface(semi_axes.map(|axis| axis / unit)));
+        Self::new(inertia, unit, Extent::Hull, |_| Ok(surface.into()))
     }
 
     /// Refuses semi-axes that are no positive numbers, or differ by more than 1000 times.

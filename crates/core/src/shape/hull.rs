@@ -163,13 +163,8 @@ impl Quickhull<'_> {
 pub fn triangles(points: &[Vector]) -> Option<Vec<[usize; 3]>> {
     let from = *points.first()?;
     let extent = |axis: fn(&Vector) -> f64| {
-        let (low, high) = points
-            .iter()
-            .map(axis)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            });
-        high - low
+        let along = || points.iter().map(axis);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
     };
     let size = extent(|p| p.x).max(extent(|p| p.y)).max(extent(|p| p.z));
     if !(size > 0.0 && size.is_finite()) {

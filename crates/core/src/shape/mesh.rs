@@ -68,8 +68,8 @@ impl Rigid {
         let mut corners = faces("vertices", points)?.into_flattened();
         corners.sort_unstable();
         corners.dedup();
-        let vertices: Vec<_> = corners.iter().map(|&i| vertex(&points[i])).collect();
-        Ok(Self::of_balls(inertia, "points", vertices.into_iter())?.with_extent(Extent::Other))
+        let vertices = corners.iter().map(|&i| vertex(&points[i]));
+        Self::of_balls(inertia, "points", Extent::Other, vertices)
     }
 }
 

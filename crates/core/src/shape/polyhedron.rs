@@ -59,8 +59,7 @@ impl Rigid {
     ) -> Result<Self, Error> {
         check("points", points, triangles)?;
         let inertia = solid(points, triangles, f64::abs, density)?;
-        let vertices: Vec<_> = points.iter().map(vertex).collect();
-        Ok(Self::of_balls(inertia, "points", vertices.into_iter())?.with_extent(Extent::Hull))
+        Self::of_balls(inertia, "points", Extent::Hull, points.iter().map(vertex))
     }
 }
 

@@ -6,7 +6,7 @@ use super::surface::{Band, Bands, Convex, Place, RigidSurface};
 use super::{BodyKind, Form, check_density};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
-use crate::math::{GAUSS, Symmetric, Vector};
+use crate::math::{Symmetric, Vector, add_to, gauss};
 use crate::simd::elementary::{angle, sincos};
 use std::f64::consts::PI;
 
@@ -123,14 +123,10 @@ impl Rigid {
         let unit = unit.fold(0.0, f64::max);
         let bands = touching.iter().map(band(unit)).collect();
         let surface = Convex::new(Bands(bands));
-        let body = Self::new(inertia, unit, |_| Ok(surface.into()))?;
         let within = sums(touching, centre)[0].abs() - content.abs();
         let concave = within > 1e-12 * content.abs();
-        Ok(if concave {
-            body.with_extent(Extent::Other)
-        } else {
-            body
-        })
+        let extent = if concave { Extent::Other } else { Extent::Hull };
+        Self::new(inertia, unit, extent, |_| Ok(surface.into()))
     }
 }
 
@@ -158,27 +154,23 @@ fn hull(profile: &[Place]) -> Vec<Band> {
 /// Those of the solid that an outline makes, with z from `origin`.
 fn sums(outline: &[Band], origin: f64) -> ProfileIntegrals {
     let mut sums = [0.0; 4];
-    let mut add = |parts: ProfileIntegrals| {
-        for (sum, part) in sums.iter_mut().zip(parts) {
-            *sum += part;
-        }
-    };
     for (arc, next) in outline.iter().zip(outline.iter().skip(1)) {
-        add(line(arc.end(1), next.end(0), origin));
+        add_to(&mut sums, line(arc.end(1), next.end(0), origin));
     }
     for arc in outline.iter().filter(|arc| arc.radius > 0.0) {
         let [from, to] = arc.ends.map(|[cosine, sine]| angle(sine, cosine));
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         // Polynomials in the sine and cosine of degree 6 at most, over half a turn at most: exact.
-        for [node, weight] in GAUSS {
-            for node in [-node, node] {
-                let (sine, cosine) = sincos(middle + half * node);
-                let z = arc.centre[0] - origin + arc.radius * cosine;
-                let r = arc.centre[1] + arc.radius * sine;
-                let (square, dz) = (r * r, -arc.radius * sine * half * weight);
-                let disc = 0.5 * square * dz;
-                add([disc, z * disc, z * z * disc, 0.5 * square * disc]);
-            }
+        for (node, weight) in gauss() {
+            let (sine, cosine) = sincos(middle + half * node);
+            let z = arc.centre[0] - origin + arc.radius * cosine;
+            let r = arc.centre[1] + arc.radius * sine;
+            let (square, dz) = (r * r, -arc.radius * sine * half * weight);
+            let disc = 0.5 * square * dz;
+            add_to(
+                &mut sums,
+                [disc, z * disc, z * z * disc, 0.5 * square * disc],
+            );
         }
     }
     sums

@@ -32,7 +32,7 @@ pub struct Inertia {
 }
 
 /// A ball, or a vertex as one of no size.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RigidBall {
     /// Its centre.
     pub centre: Vector,
@@ -124,8 +124,8 @@ pub(super) const CENTRE: Parameter = Parameter::new(
 
 /// Triples of numbers as vectors.
 pub(super) fn vectors(numbers: &[f64]) -> Vec<Vector> {
-    let rows = numbers.as_chunks().0.iter();
-    rows.map(|&[x, y, z]| Vector::new(x, y, z)).collect()
+    let rows = numbers.as_chunks::<3>().0.iter();
+    rows.map(|&row| row.into()).collect()
 }
 
 impl Rigid {
@@ -135,15 +135,13 @@ impl Rigid {
             Some(Argument::Numbers(_)) => given.several(place),
             _ => return Ok(self),
         };
-        let [x, y, z] = given.several(place + 1);
-        let own = given.is_absent(place + 1);
+        let mut centre = self.inertia.centre;
+        if !given.is_absent(place + 1) {
+            centre = given.several(place + 1).into();
+        }
         let inertia = Inertia {
             mass: self.inertia.mass,
-            centre: if own {
-                self.inertia.centre
-            } else {
-                Vector::new(x, y, z)
-            },
+            centre,
             tensor: Symmetric::from_rows([[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]),
         };
         let body = self.with_inertia(inertia)?;
@@ -154,7 +152,7 @@ impl Rigid {
             let level = (1.0 - z * z).sqrt();
             body.support(Vector::new(level * cosine, level * sine, z)) > 0.0
         });
-        Error::unless(within, "centre", x, "within the body (m)")?;
+        Error::unless(within, "centre", centre.x, "within the body (m)")?;
         Ok(body)
     }
 
@@ -162,6 +160,7 @@ impl Rigid {
     pub(super) fn of_balls(
         inertia: Inertia,
         what: &'static str,
+        extent: Extent,
         balls: impl ExactSizeIterator<Item = RigidBall>,
     ) -> Result<Self, Error> {
         Error::unless(balls.len() < MOST, what, balls.len(), "fewer than 2^31")?;
@@ -177,7 +176,7 @@ impl Rigid {
         }
         let reach = |point: &Point| point.place.norm() + point.radius;
         let unit = points.iter().map(reach).fold(0.0, f64::max);
-        Self::new(inertia, unit, |axes| {
+        Self::new(inertia, unit, extent, |axes| {
             let back = axes.inverse();
             for (number, point) in points.iter_mut().enumerate() {
                 *point = Point::new(back.rotate(point.place) / unit, point.radius / unit, number);
@@ -194,11 +193,7 @@ impl Rigid {
         let RigidSurface::Balls(balls) = &self.surface else {
             return Ok(Vec::new());
         };
-        let none = RigidBall {
-            centre: Vector::default(),
-            radius: 0.0,
-        };
-        let mut found = filled("asperities", none, balls.points().len())?;
+        let mut found = filled("asperities", RigidBall::default(), balls.points().len())?;
         for point in balls.points() {
             found[point.number as usize] = RigidBall {
                 centre: self.axes.rotate(point.place * self.unit) + self.inertia.centre,
@@ -212,24 +207,18 @@ impl Rigid {
     pub(super) fn new(
         inertia: Inertia,
         unit: f64,
+        extent: Extent,
         surface: impl FnOnce(Quaternion) -> Result<RigidSurface, Error>,
     ) -> Result<Self, Error> {
         let (top, axes) = principal(&inertia, unit)?;
-        let surface = surface(axes)?;
-        let extent = each_surface!(&surface, _balls => Extent::Balls, _convex => Extent::Hull);
         Ok(Self {
             inertia,
             unit,
             axes,
             top,
-            surface,
+            surface: surface(axes)?,
             extent,
         })
-    }
-
-    /// The same body with another extent than its surface has by itself.
-    pub(super) fn with_extent(self, extent: Extent) -> Self {
-        Self { extent, ..self }
     }
 
     /// The same parts with another inertia: mass, centre and tensor, in the axes that the body was given in.
@@ -237,19 +226,18 @@ impl Rigid {
     /// # Errors
     /// Unless the mass is positive, and the tensor is that of a body.
     pub fn with_inertia(self, inertia: Inertia) -> Result<Self, Error> {
-        let body = each_surface!(&self.surface, _balls => {
-            Self::of_balls(inertia, "points", self.balls()?.into_iter())
+        each_surface!(&self.surface, _balls => {
+            Self::of_balls(inertia, "points", self.extent, self.balls()?.into_iter())
         }, convex => {
             let back = self.axes.inverse();
             let shift = back.rotate(inertia.centre - self.inertia.centre);
             // No part is farther from the new centre than this.
             let unit = self.unit + shift.norm();
-            Self::new(inertia, unit, |axes| {
+            Self::new(inertia, unit, self.extent, |axes| {
                 let moved = convex.with_frame(back * axes, shift / self.unit, unit / self.unit);
                 Ok(moved.into())
             })
-        })?;
-        Ok(body.with_extent(self.extent))
+        })
     }
 
     /// The principal moments of inertia, in kg m².

@@ -149,12 +149,8 @@ impl Rigid {
             Some(ball) => *ball,
             None => roughness.asperity(&surface, i - balls.len()),
         });
-        let body = Self::of_balls(inertia, "asperities", parts)?;
-        Ok(if barrel {
-            body.with_extent(Extent::Other)
-        } else {
-            body
-        })
+        let extent = if barrel { Extent::Other } else { Extent::Balls };
+        Self::of_balls(inertia, "asperities", extent, parts)
     }
 }
 

@@ -4,6 +4,7 @@
 //! their ε₁ = 2/n₁ and ε₂ = 2/n₂.
 
 use super::ellipsoid::SEMI_AXES;
+use super::pieces::Extent;
 use super::rigid::{CENTRE, Inertia, Rigid, TENSOR};
 use super::surface::{Convex, Superellipsoid, exp, power};
 use super::{BodyKind, Form, check_density};
@@ -120,7 +121,8 @@ impl Rigid {
         };
         let [n1, n2] = exponents;
         let unit = reach(n1, [reach(n2, [a * a, b * b]), c * c]).sqrt() * (1.0 + 1e-15);
-        let body = Superellipsoid::new(semi_axes.map(|axis| axis / unit), exponents);
-        Self::new(inertia, unit, |_| Ok(Convex::new(body).into()))
+        let semi_axes = semi_axes.map(|axis| axis / unit);
+        let surface = Convex::new(Superellipsoid::new(semi_axes, exponents));
+        Self::new(inertia, unit, Extent::Hull, |_| Ok(surface.into()))
     }
 }

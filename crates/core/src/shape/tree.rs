@@ -8,7 +8,7 @@
 //!
 //! r − **n**·(**p** − **c**) = a cos α + r − **n**·**b** ≤ (a + r) cos α + r(1 − cos α) + b sin α.
 //!
-//! With the largest a + r, r and b this is the bound of a disc. BallTree on a curved surface lie in the paraboloid a + r + b²/2c ≤ t about the same
+//! With the largest a + r, r and b this is the bound of a disc. Balls on a curved surface lie in the paraboloid a + r + b²/2c ≤ t about the same
 //! axis, which is as thin as the surface: (a + r) cos α + b sin α ≤ (t − b²/2c) cos α + b sin α, which is largest at b = c tan α or at the
 //! largest b. A node has the bound that is lower. And r − **n**·(**p** − **c**) ≤ max r + max|**p** − **c**| for every **n**.
 
@@ -24,7 +24,7 @@ use pulp::Scalar;
 
 /// Most balls of a leaf.
 const LEAF: usize = 16;
-/// BallTree are in front of the tree, and asked one by one, if they are more than so many times as large as all but [`LEAF`].
+/// Balls are in front of the tree, and asked one by one, if they are more than so many times as large as all but [`LEAF`].
 const LARGE: f64 = 4.0;
 /// Most levels of a tree.
 const DEEPEST: usize = 16;
@@ -121,8 +121,7 @@ impl Quarters {
     fn bound(&mut self, k: usize, points: &[Point]) {
         let [low, high] = sides(points);
         let middle = [0, 1, 2].map(|i| (0.5 * (low[i] + high[i])) as f32);
-        let [x, y, z] = middle.map(f64::from);
-        let c = Vector::new(x, y, z);
+        let c = Vector::from(middle.map(f64::from));
         let far = length(c);
         let u = if far > 0.0 { c / far } else { c };
         let far = far as f32;

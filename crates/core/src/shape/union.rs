@@ -2,7 +2,7 @@
 
 use super::rigid::{RigidBall, VolumeMoments};
 use crate::Error;
-use crate::math::{GAUSS, Symmetric, Vector};
+use crate::math::{Symmetric, Vector, add_to, gauss};
 use crate::simd::elementary::{angle, sincos};
 use crate::threads::go_on;
 use std::f64::consts::PI;
@@ -68,13 +68,8 @@ pub(super) fn union(balls: &[RigidBall]) -> Result<VolumeMoments, Error> {
     }
     let [content, x, y, z, xx, yy, zz, xy, xz, yz] = sums;
     let second = Symmetric::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
-    let centred = VolumeMoments {
-        content,
-        first: Vector::new(x, y, z),
-        second,
-    };
     // Moved back to where the balls are.
-    let centre = centred.first / content;
+    let centre = Vector::new(x, y, z) / content;
     let own = VolumeMoments::about(-content, centre, second).second;
     Ok(VolumeMoments::about(content, centre + origin, own))
 }
@@ -180,7 +175,7 @@ impl CappedSphere {
             half,
             arcs,
         };
-        let whole = part.gauss([-1.0, 1.0]);
+        let whole = part.integral([-1.0, 1.0]);
         part.halved(([-1.0, 1.0], DEPTH), whole, scale, sums);
     }
 
@@ -349,12 +344,10 @@ impl Zone<'_> {
     ) {
         let middle = 0.5 * (low + high);
         let parts = [[low, middle], [middle, high]];
-        let [left, right] = parts.map(|part| self.gauss(part));
+        let [left, right] = parts.map(|part| self.integral(part));
         let off = (left[0] + right[0] - whole[0]).abs();
         if off <= scale || depth == 0 {
-            for (sum, (left, right)) in sums.iter_mut().zip(left.iter().zip(right)) {
-                *sum += left + right;
-            }
+            add_to(sums, std::array::from_fn(|i| left[i] + right[i]));
             return;
         }
         for (part, found) in parts.into_iter().zip([left, right]) {
@@ -363,18 +356,14 @@ impl Zone<'_> {
     }
 
     /// Gauss's quadrature in s from `low` to `high`, with μ = `middle` + `half` sin(πs/2).
-    fn gauss(&self, [low, high]: [f64; 2]) -> [f64; 10] {
+    fn integral(&self, [low, high]: [f64; 2]) -> [f64; 10] {
         let mut sums = [0.0; 10];
-        for [node, weight] in GAUSS {
-            for node in [-node, node] {
-                let s = 0.5 * (low + high) + 0.5 * (high - low) * node;
-                let (sine, cosine) = sincos(0.5 * PI * s);
-                let measure = 0.25 * PI * (high - low) * weight * self.half * cosine;
-                let circle = self.circle(self.middle + self.half * sine);
-                for (sum, value) in sums.iter_mut().zip(circle) {
-                    *sum += measure * value;
-                }
-            }
+        for (node, weight) in gauss() {
+            let s = 0.5 * (low + high) + 0.5 * (high - low) * node;
+            let (sine, cosine) = sincos(0.5 * PI * s);
+            let measure = 0.25 * PI * (high - low) * weight * self.half * cosine;
+            let circle = self.circle(self.middle + self.half * sine);
+            add_to(&mut sums, circle.map(|value| measure * value));
         }
         sums
     }
@@ -397,9 +386,7 @@ impl Zone<'_> {
                 0.5 * (length + s2 * c2 - s1 * c1),
                 0.5 * (s2 - s1) * (s2 + s1),
             ];
-            for (sum, value) in arcs.iter_mut().zip(values) {
-                *sum += value;
-            }
+            add_to(&mut arcs, values);
         }
         let [one, cosine, sine, square, product] = arcs;
         let (ix, iy) = (x * one + rho * cosine, y * one + rho * sine);

@@ -140,10 +140,8 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
 
     #[inline(always)]
     fn none(simd: S) -> Self {
-        let (zero, still) = (
-            Pack::splat(simd, 0.0),
-            Vectors::splat(simd, Vector::default()),
-        );
+        let zero = Pack::splat(simd, 0.0);
+        let still = Vectors::splat(simd, Vector::default());
         Self {
             axis: Vectors::splat(simd, UNITS[2]),
             precession: still,
@@ -159,10 +157,9 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
     fn put(&mut self, lane: usize, body: &AxialBody, state: &FreeBody) {
         let mut spin = state.spin.parts();
         spin[body.axis] *= body.ratio;
-        let [x, y, z] = spin;
         self.axis.put(lane, state.attitude.rotate(UNITS[body.axis]));
         self.precession
-            .put(lane, state.attitude.rotate(Vector::new(x, y, z)));
+            .put(lane, state.attitude.rotate(spin.into()));
         self.turned.put(lane, Quaternion::IDENTITY);
     }
 
@@ -269,9 +266,29 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
         pair: &LanePair<'_, '_, AxialBody>,
         active: Mask<S, 1>,
     ) -> NearestParts<S> {
-        match AxialBody::parts(pair) {
-            Some(parts) => all.look_round(&parts, active),
-            None => all.look(pair),
+        let Some(parts) = AxialBody::parts(pair) else {
+            return all.look(pair);
+        };
+        let bodies = [
+            all.bodies[0].turning(all.time),
+            all.bodies[1].turning(all.time),
+        ];
+        let axes = [bodies[0].axis, bodies[1].axis];
+        let apart = all.velocity.mul_add(all.time, all.apart);
+        let between = parts.between(apart, axes);
+        // The last normal, or that between the centres.
+        let none = all.normal.dot(all.normal).eq(0.0);
+        let last = (all.normal).or(none, between * (1.0 / between.dot(between).sqrt()));
+        all.normal = parts.normal(last, between, axes, active, true);
+        let zero = Pack::splat(all.time.simd(), 0.0);
+        let leaves = all.time.eq(0.0) & zero.lt(all.left);
+        let motion = [apart, all.velocity];
+        let found = parts.step(all.normal, motion, &bodies, (leaves, all.left_speed));
+        NearestParts {
+            clear: found.clear,
+            balls: zero + 1.0,
+            rate: found.rate,
+            bound: found.bound,
         }
     }
 
@@ -282,14 +299,30 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
         touched: Mask<S, 1>,
         balls: Pack<S, 1>,
     ) -> LaneContact<S, Pack<S, 1>> {
-        match AxialBody::parts(pair) {
-            Some(parts) => all.meet_round(&parts, touched),
-            None => all.meet(pair, balls),
-        }
+        let Some(parts) = AxialBody::parts(pair) else {
+            return all.meet(pair, balls);
+        };
+        let axes = [all.bodies[0].axis, all.bodies[1].axis];
+        let between = parts.between(all.apart, axes);
+        all.normal = parts.normal(all.normal, between, axes, touched, false);
+        let found = parts.contact(all.normal, between, axes);
+        (all.normal, found.places, found.radius)
     }
 
     fn ended(simd: S) -> EndedRotations<S> {
-        EndedRotations::none(simd)
+        let zero = Pack::splat(simd, 0.0);
+        let body = EndedRotation {
+            attitude: Quaternions::splat(simd, Quaternion::IDENTITY),
+            turned: Quaternions::splat(simd, Quaternion::IDENTITY),
+            precession: Vectors::splat(simd, Vector::default()),
+            own: zero,
+            time: zero,
+        };
+        EndedRotations {
+            count: 0,
+            jobs: [0; MOST_LANES],
+            bodies: [body; 2],
+        }
     }
 
     #[inline(always)]
@@ -300,9 +333,19 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
         job: usize,
         run: &mut LaneEncounters<'_, '_, '_, AxialBody>,
     ) {
-        ended.add(all, lane, job, run);
+        let (to, from) = (ended.count, &run.approaches[job]);
+        ended.jobs[to] = job;
+        for i in 0..2 {
+            let (body, flight, state) = (&mut ended.bodies[i], &all.bodies[i], &from.states[i]);
+            body.attitude.put(to, state.attitude);
+            body.turned.put(to, flight.turned.lane(lane));
+            body.precession.put(to, flight.precession.lane(lane));
+            body.own.as_mut_slice()[to] = state.spin.parts()[run.pair.shapes[i].axis];
+            body.time.as_mut_slice()[to] = from.passed[i] + all.clock.as_slice()[lane];
+        }
+        ended.count += 1;
         if ended.count == Pack::<S, 1>::WIDTH {
-            ended.find(run.pair, run.ends);
+            Self::find(ended, run.pair, run.ends);
         }
     }
 
@@ -312,7 +355,23 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
         pair: &LanePair<'_, '_, AxialBody>,
         ends: &mut [Option<End>],
     ) {
-        ended.find(pair, ends);
+        for i in 0..2 {
+            let (shape, body) = (&pair.shapes[i], &ended.bodies[i]);
+            let axis = Vectors::splat(body.own.simd(), UNITS[shape.axis]);
+            let (sine, cosine) = sincos_in_lanes(0.5 * body.own * (1.0 - shape.ratio) * body.time);
+            let rolled = body.attitude * Quaternions::of(cosine, axis * sine);
+            let attitude = (body.turned * rolled).normalized();
+            let spins = attitude.inverse().rotate(body.precession);
+            for lane in 0..ended.count {
+                if let Some(Ok(end)) = &mut ends[ended.jobs[lane]] {
+                    let mut spin = spins.lane(lane).parts();
+                    spin[shape.axis] = body.own.as_slice()[lane];
+                    end.states[i].attitude = attitude.lane(lane);
+                    end.states[i].spin = spin.into();
+                }
+            }
+        }
+        ended.count = 0;
     }
 }
 
@@ -330,53 +389,6 @@ fn then<S: Simd>(
     )
 }
 
-impl<S: Simd> Encountering<S, AxialFlight<S>> {
-    /// Looks at spheroids in some lanes.
-    #[inline(always)]
-    fn look_round(&mut self, parts: &RoundParts<'_>, active: Mask<S, 1>) -> NearestParts<S> {
-        let bodies = [
-            self.bodies[0].turning(self.time),
-            self.bodies[1].turning(self.time),
-        ];
-        let axes = [bodies[0].axis, bodies[1].axis];
-        let apart = self.velocity.mul_add(self.time, self.apart);
-        let between = parts.between(apart, axes);
-        self.normal = parts.normal(self.normal(between), between, axes, active, true);
-        let zero = Pack::splat(self.time.simd(), 0.0);
-        let leaves = self.time.eq(0.0) & zero.lt(self.left);
-        let motion = [apart, self.velocity];
-        let found = parts.step(self.normal, motion, &bodies, (leaves, self.left_speed));
-        NearestParts {
-            clear: found.clear,
-            balls: zero + 1.0,
-            rate: found.rate,
-            bound: found.bound,
-        }
-    }
-
-    /// The last normal, or that between the centres.
-    #[inline(always)]
-    fn normal(&self, between: Vectors<S, 1>) -> Vectors<S, 1> {
-        let none = self.normal.dot(self.normal).eq(0.0);
-        let along = between * (1.0 / between.dot(between).sqrt());
-        self.normal.or(none, along)
-    }
-
-    /// Where spheroids touch, in some lanes.
-    #[inline(always)]
-    fn meet_round(
-        &mut self,
-        parts: &RoundParts<'_>,
-        touched: Mask<S, 1>,
-    ) -> LaneContact<S, Pack<S, 1>> {
-        let axes = [self.bodies[0].axis, self.bodies[1].axis];
-        let between = parts.between(self.apart, axes);
-        self.normal = parts.normal(self.normal, between, axes, touched, false);
-        let found = parts.contact(self.normal, between, axes);
-        (self.normal, found.places, found.radius)
-    }
-}
-
 /// The rotation of bodies whose encounters have ended, one in each lane: it is found for as many as there are lanes at once.
 pub(in crate::pair) struct EndedRotations<S: Simd> {
     count: usize,
@@ -392,68 +404,4 @@ struct EndedRotation<S: Simd> {
     precession: Vectors<S, 1>,
     own: Pack<S, 1>,
     time: Pack<S, 1>,
-}
-
-impl<S: Simd> EndedRotations<S> {
-    #[inline(always)]
-    fn none(simd: S) -> Self {
-        let zero = Pack::splat(simd, 0.0);
-        let body = EndedRotation {
-            attitude: Quaternions::splat(simd, Quaternion::IDENTITY),
-            turned: Quaternions::splat(simd, Quaternion::IDENTITY),
-            precession: Vectors::splat(simd, Vector::default()),
-            own: zero,
-            time: zero,
-        };
-        Self {
-            count: 0,
-            jobs: [0; MOST_LANES],
-            bodies: [body; 2],
-        }
-    }
-
-    /// Adds those of a lane.
-    #[inline(always)]
-    fn add(
-        &mut self,
-        all: &Encountering<S, AxialFlight<S>>,
-        lane: usize,
-        job: usize,
-        run: &LaneEncounters<'_, '_, '_, AxialBody>,
-    ) {
-        let (to, from) = (self.count, &run.approaches[job]);
-        self.jobs[to] = job;
-        for i in 0..2 {
-            let (body, flight, state) = (&mut self.bodies[i], &all.bodies[i], &from.states[i]);
-            body.attitude.put(to, state.attitude);
-            body.turned.put(to, flight.turned.lane(lane));
-            body.precession.put(to, flight.precession.lane(lane));
-            body.own.as_mut_slice()[to] = state.spin.parts()[run.pair.shapes[i].axis];
-            body.time.as_mut_slice()[to] = from.passed[i] + all.clock.as_slice()[lane];
-        }
-        self.count += 1;
-    }
-
-    /// Finds all of them.
-    #[inline(always)]
-    fn find(&mut self, pair: &LanePair<'_, '_, AxialBody>, ends: &mut [Option<End>]) {
-        for i in 0..2 {
-            let (shape, body) = (&pair.shapes[i], &self.bodies[i]);
-            let axis = Vectors::splat(body.own.simd(), UNITS[shape.axis]);
-            let (sine, cosine) = sincos_in_lanes(0.5 * body.own * (1.0 - shape.ratio) * body.time);
-            let rolled = body.attitude * Quaternions::of(cosine, axis * sine);
-            let attitude = (body.turned * rolled).normalized();
-            let spins = attitude.inverse().rotate(body.precession);
-            for lane in 0..self.count {
-                if let Some(Ok(end)) = &mut ends[self.jobs[lane]] {
-                    let mut spin = spins.lane(lane).parts();
-                    spin[shape.axis] = body.own.as_slice()[lane];
-                    let [x, y, z] = spin;
-                    end.states[i].attitude = attitude.lane(lane);
-                    end.states[i].spin = Vector::new(x, y, z);
-                }
-            }
-        }
-        self.count = 0;
-    }
 }

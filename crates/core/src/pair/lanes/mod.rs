@@ -266,10 +266,8 @@ pub(super) type LaneContact<S, P> = (Vectors<S, 1>, [P; 2], Pack<S, 1>);
 impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
     #[inline(always)]
     fn none(simd: S) -> Self {
-        let (zero, still) = (
-            Pack::splat(simd, 0.0),
-            Vectors::splat(simd, Vector::default()),
-        );
+        let zero = Pack::splat(simd, 0.0);
+        let still = Vectors::splat(simd, Vector::default());
         Self {
             apart: Vectors::splat(simd, UNITS[2]),
             velocity: still,

@@ -228,13 +228,12 @@ impl Shape for Dumbbell {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::GAUSS;
+    use crate::math::gauss;
 
     /// The integrals over slices of the upper half, (A3), (A5), (A6), by Gauss's quadrature, exact for these polynomials.
     fn by_quadrature(l: f64) -> [f64; 3] {
-        let nodes = GAUSS.iter().flat_map(|&[x, w]| [(x, w), (-x, w)]);
         let half = 0.5 * (1.0 + l / 2.0);
-        nodes.fold([0.0; 3], |sum, (x, w)| {
+        gauss().fold([0.0; 3], |sum, (x, w)| {
             let z = half * (1.0 + x);
             let r2 = 1.0 - (z - l / 2.0).powi(2); // (A2)
             let w = w * half;

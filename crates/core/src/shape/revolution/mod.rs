@@ -7,7 +7,6 @@ mod dumbbell;
 mod hollow;
 mod hull;
 mod loaded_sphere;
-mod outline;
 mod spherocylinder;
 mod spheroid;
 
@@ -15,7 +14,6 @@ pub use dumbbell::Dumbbell;
 pub(crate) use hull::{AxisMotion, Hull, HullPart, with_hull};
 pub use hull::{Ball, Balls, Ellipsoid, EqualBalls, OneBall, Sphere, Surface, TwoBalls};
 pub use loaded_sphere::LoadedSphere;
-pub use outline::Arc;
 pub use spherocylinder::Spherocylinder;
 pub use spheroid::Spheroid;
 
@@ -24,6 +22,7 @@ use super::{check_density, check_distance, check_length};
 use crate::Error;
 use crate::math::{Quaternion, Vector};
 use hollow::{INERTIA, WALL, made};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A body of revolution in the core's units (lengths in R, masses in m).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,6 +71,48 @@ pub struct Solid {
     pub outline: [Arc; 2],
     /// The body in the core's units.
     pub scaled: Body,
+}
+
+/// An arc of an ellipse whose centre is on the axis: the points `centre` + `along` cos t on the axis and `across` sin t beside it, t
+/// from `from` to `to` within [0, π].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arc {
+    /// Position of the centre on the axis, from the centre of mass, in m.
+    pub centre: f64,
+    /// Semi-axis along the axis, in m.
+    pub along: f64,
+    /// Semi-axis across the axis, in m.
+    pub across: f64,
+    /// The first t, in rad.
+    pub from: f64,
+    /// The last t, in rad.
+    pub to: f64,
+}
+
+impl Arc {
+    /// A whole ellipse of revolution, in two halves.
+    pub(super) fn halves(centre: f64, along: f64, across: f64) -> [Self; 2] {
+        [(0.0, FRAC_PI_2), (FRAC_PI_2, PI)].map(|(from, to)| Self {
+            centre,
+            along,
+            across,
+            from,
+            to,
+        })
+    }
+
+    /// The caps of two spheres with these centres and radii; the first ends at the first of `angles` from the axis, the second begins
+    /// at the second.
+    pub(super) fn caps(centres: [f64; 2], radii: [f64; 2], angles: [f64; 2]) -> [Self; 2] {
+        let cap = |i: usize, from, to| Self {
+            centre: centres[i],
+            along: radii[i],
+            across: radii[i],
+            from,
+            to,
+        };
+        [cap(0, 0.0, angles[0]), cap(1, angles[1], PI)]
+    }
 }
 
 impl<S: Shape> From<S> for Solid {

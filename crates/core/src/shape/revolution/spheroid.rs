@@ -6,7 +6,7 @@ use super::{
 };
 use crate::Error;
 use crate::describe::{Arguments, Kind, Parameter};
-use crate::math::GAUSS;
+use crate::math::{add_to, gauss};
 use std::f64::consts::PI;
 
 /// Largest ratio of the semi-axes; beyond it the relative rounding error of the contact exceeds 10⁻¹².
@@ -154,7 +154,7 @@ fn cavity((a, c): (f64, f64), wall: f64) -> [f64; 3] {
     };
     let exact = 2.0 * f64::EPSILON * (a * a * c);
     let exact = [exact, exact, exact * (a * a)];
-    let whole = gauss(&slices, ends);
+    let whole = integral(&slices, ends);
     halved(&slices, ends, whole, exact, DEPTH)
 }
 
@@ -171,7 +171,7 @@ fn halved(
 ) -> [f64; 3] {
     let middle = 0.5 * (low + high);
     let parts = [[low, middle], [middle, high]];
-    let [left, right] = parts.map(|part| gauss(f, part));
+    let [left, right] = parts.map(|part| integral(f, part));
     let both = std::array::from_fn(|i| left[i] + right[i]);
     let agrees = |i: usize| f64::abs(both[i] - whole[i]) <= exact[i];
     if depth == 0 || (0..3).all(agrees) {
@@ -183,15 +183,14 @@ fn halved(
 }
 
 /// An integral from `low` to `high` by Gauss's quadrature.
-fn gauss(f: &impl Fn(f64) -> [f64; 3], [low, high]: [f64; 2]) -> [f64; 3] {
+fn integral(f: &impl Fn(f64) -> [f64; 3], [low, high]: [f64; 2]) -> [f64; 3] {
     let mut sums = [0.0; 3];
-    for [node, weight] in GAUSS {
-        for node in [-node, node] {
-            let values = f(0.5 * (low + high) + 0.5 * (high - low) * node);
-            for (sum, value) in sums.iter_mut().zip(values) {
-                *sum += 0.5 * (high - low) * weight * value;
-            }
-        }
+    for (node, weight) in gauss() {
+        let values = f(0.5 * (low + high) + 0.5 * (high - low) * node);
+        add_to(
+            &mut sums,
+            values.map(|value| 0.5 * (high - low) * weight * value),
+        );
     }
     sums
 }
