@@ -118,7 +118,26 @@ impl From<usize> for Value {
     }
 }
 
+impl From<&str> for Value {
+    fn from(name: &str) -> Self {
+        Self::Name(name.to_owned())
+    }
+}
+
 impl Error {
+    /// The error of a parameter outside its range.
+    pub(crate) fn parameter(
+        name: &'static str,
+        value: impl Into<Value>,
+        allowed: impl Into<String>,
+    ) -> Self {
+        Self::Parameter {
+            name,
+            value: value.into(),
+            allowed: allowed.into(),
+        }
+    }
+
     /// The error for `length` values that could not be allocated.
     pub(crate) fn out_of_memory<T>(what: &'static str, length: usize) -> Self {
         let bytes = length.saturating_mul(size_of::<T>());
@@ -135,11 +154,7 @@ impl Error {
         if holds {
             Ok(())
         } else {
-            Err(Self::Parameter {
-                name,
-                value: value.into(),
-                allowed: allowed.to_owned(),
-            })
+            Err(Self::parameter(name, value, allowed))
         }
     }
 
@@ -179,11 +194,7 @@ impl Error {
         let found = known.iter().find(|(name, _)| *name == value);
         found.map(|&(_, chosen)| chosen).ok_or_else(|| {
             let names: Vec<_> = known.iter().map(|(name, _)| format!("'{name}'")).collect();
-            Self::Parameter {
-                name,
-                value: Value::Name(value.to_owned()),
-                allowed: names.join(" or "),
-            }
+            Self::parameter(name, value, names.join(" or "))
         })
     }
 }

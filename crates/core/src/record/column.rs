@@ -1,10 +1,11 @@
 //! The columns of a table: the values of a variable in one type of elements, a cell for each event or row.
 
 use super::variable::{Element, Elements, Variable};
+use crate::Error;
 use crate::math::Vectors;
 use crate::memory::zeros;
 use crate::simd::Pack;
-use crate::{Error, Value};
+
 use pulp::Simd;
 use std::ops::Range;
 
@@ -154,11 +155,8 @@ impl Columns {
                 Some(place) => columns.0[place] = true,
                 None => {
                     let known: Vec<_> = all.iter().map(|about| about.key).collect();
-                    return Err(Error::Parameter {
-                        name: "columns",
-                        value: Value::Name(name.to_owned()),
-                        allowed: format!("one of {}", known.join(", ")),
-                    });
+                    let allowed = format!("one of {}", known.join(", "));
+                    return Err(Error::parameter("columns", name, allowed));
                 }
             }
         }

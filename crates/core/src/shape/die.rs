@@ -79,11 +79,8 @@ fn solid(given: &[Argument<'_>]) -> Result<Form, Error> {
             "084 694 684 b75 a05 a75 a08 204 294 205 2b9 2b5 3b9 369 3b7 1a8 168 1a7 136 137",
         ),
         other => {
-            return Err(Error::Parameter {
-                name: "faces",
-                value: (other as usize).into(),
-                allowed: "4, 6, 8, 12 or 20".to_owned(),
-            });
+            let allowed = "4, 6, 8, 12 or 20";
+            return Err(Error::parameter("faces", other as usize, allowed));
         }
     };
     check_length("edge", given.number(1))?;

@@ -48,11 +48,7 @@ impl Rigid {
     /// # Errors
     /// As [`Rigid::polyhedron`]; and unless every edge is that of as many triangles in one direction as in the other, and the volume positive.
     pub fn mesh(points: &[Vector], triangles: &[[usize; 3]], density: f64) -> Result<Self, Error> {
-        let refused = |allowed: String| Error::Parameter {
-            name: "triangles",
-            value: triangles.len().into(),
-            allowed,
-        };
+        let refused = |allowed: String| Error::parameter("triangles", triangles.len(), allowed);
         check("vertices", points, triangles)?;
         if let Some(problem) = open_edge(points, triangles) {
             return Err(refused(problem));

@@ -179,11 +179,11 @@ impl AnyBody<'_> {
     pub fn revolution(&self) -> Result<&Solid, Error> {
         match self {
             Self::Revolution(solid) => Ok(solid),
-            Self::Rigid(_) => Err(Error::Parameter {
-                name: "body",
-                value: crate::Value::Name("a rigid body of any shape".into()),
-                allowed: "a body of revolution".into(),
-            }),
+            Self::Rigid(_) => Err(Error::parameter(
+                "body",
+                "a rigid body of any shape",
+                "a body of revolution",
+            )),
         }
     }
 
@@ -193,13 +193,9 @@ impl AnyBody<'_> {
             Self::Revolution(solid) => Some(solid.pieces()),
             Self::Rigid(body) => body.pieces(),
         };
-        found.ok_or_else(|| Error::Parameter {
-            name,
-            value: crate::Value::Name("this body".into()),
-            allowed: "made of balls, an ellipsoid, a superellipsoid with exponents up to 8, a convex polyhedron, a cylinder or a spherocylinder: \
-                      the surface of another is not known where it is not on its convex hull, or not yet followed"
-                .into(),
-        })
+        let allowed = "made of balls, an ellipsoid, a superellipsoid with exponents up to 8, a convex polyhedron, a cylinder or a spherocylinder: \
+                       the surface of another is not known where it is not on its convex hull, or not yet followed";
+        found.ok_or_else(|| Error::parameter(name, "this body", allowed))
     }
 }
 

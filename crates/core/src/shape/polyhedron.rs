@@ -40,11 +40,7 @@ const STONE: &[f64] = &[
 /// The faces of the convex hull of points.
 pub(super) fn faces(name: &'static str, points: &[Vector]) -> Result<Vec<[usize; 3]>, Error> {
     let allowed = "four or more, finite, not all in one plane (m)";
-    hull::triangles(points).ok_or(Error::Parameter {
-        name,
-        value: points.len().into(),
-        allowed: allowed.to_owned(),
-    })
+    hull::triangles(points).ok_or_else(|| Error::parameter(name, points.len(), allowed))
 }
 
 impl Rigid {
@@ -78,11 +74,8 @@ pub(super) fn check(
 ) -> Result<(), Error> {
     if triangles.as_flattened().iter().any(|&i| i >= points.len()) {
         let last = points.len().saturating_sub(1);
-        return Err(Error::Parameter {
-            name: "triangles",
-            value: triangles.len().into(),
-            allowed: format!("triples of numbers of the {name}, from 0 to {last}"),
-        });
+        let allowed = format!("triples of numbers of the {name}, from 0 to {last}");
+        return Err(Error::parameter("triangles", triangles.len(), allowed));
     }
     for x in points.iter().flat_map(|point| [point.x, point.y, point.z]) {
         Error::unless(x.is_finite(), name, x, "finite (m)")?;

@@ -43,13 +43,10 @@ fn check_outline(profile: &[Place]) -> Result<(), Error> {
         for (j, other) in profile[..i + 1].windows(2).enumerate() {
             let ([a, b], [c, d]) = ([line[0], line[1]], [other[0], other[1]]);
             if side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0 {
-                return Err(Error::Parameter {
-                    name: "profile",
-                    value: profile.len().into(),
-                    allowed: format!(
-                        "an outline whose lines do not cross; those from the points {j} and {i} cross"
-                    ),
-                });
+                let allowed = format!(
+                    "an outline whose lines do not cross; those from the points {j} and {i} cross"
+                );
+                return Err(Error::parameter("profile", profile.len(), allowed));
             }
         }
     }

@@ -102,11 +102,8 @@ impl<'a> Heights<'a> {
                 ("normal", &[mean, deviation]) => Self::Normal(mean, deviation),
                 ("power", &[exponent, least, most]) => Self::Power(exponent, least, most),
                 _ => {
-                    return Err(Error::Parameter {
-                        name: "heights",
-                        value: crate::Value::Name(name.to_owned()),
-                        allowed: "exponential, normal or power, with its numbers".to_owned(),
-                    });
+                    let allowed = "exponential, normal or power, with its numbers";
+                    return Err(Error::parameter("heights", name, allowed));
                 }
             },
             other => Self::Equal(other.map_or(f64::NAN, |&given| [given].number(0))),
