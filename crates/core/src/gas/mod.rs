@@ -33,7 +33,6 @@ use row::{CandidateRow, ROW, WAITS, bound};
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The majorant of u over twice the largest speed at the last look at all of them.
 const ROOM: f64 = 1.02;
@@ -152,47 +151,44 @@ impl Gas<'_> {
         store: Option<&mut [f64]>,
     ) -> Result<(Vec<f64>, Vec<[f64; STATE]>), Error> {
         self.check()?;
-        let stores: Option<Vec<_>> =
-            store.map(|all| all.chunks_mut(self.stored()).map(Mutex::new).collect());
-        let next = AtomicUsize::new(0);
         let size = (self.samples + 1) * self.width();
         let each = self.each();
         let kept = if self.keep { each * self.batches } else { 0 };
-        let rows = memory::zeros("looks at a gas", size * self.batches)?;
-        let states = memory::filled("states of a gas", [0.0; STATE], kept)?;
-        let results = Mutex::new((rows, states));
+        let mut rows = memory::zeros("looks at a gas", size * self.batches)?;
+        let mut states = memory::filled("states of a gas", [0.0; STATE], kept)?;
+        // Each batch writes into its own part of each.
+        let mut stores = store.map(|all| all.chunks_mut(self.stored()));
+        let mut kept = states.chunks_mut(each);
+        let batches = rows.chunks_mut(size).map(|rows| {
+            let store = stores.as_mut().and_then(Iterator::next);
+            (rows, store, kept.next().unwrap_or_default())
+        });
+        let queue = Mutex::new(batches.enumerate());
         let work = |_| {
-            loop {
-                let batch = next.fetch_add(1, Ordering::Relaxed);
-                if batch >= self.batches || monitor.is_cancelled() {
-                    return Ok(());
-                }
-                let mut store = stores
-                    .as_ref()
-                    .map(|all| all[batch].lock().expect("nobody panics who holds it"));
+            while !monitor.is_cancelled() {
+                let next = queue.lock().expect("nobody panics who holds it").next();
+                let Some((number, (rows, store, kept))) = next else {
+                    break;
+                };
                 let gas = Level::run_scalar(FollowedGas {
                     gas: self,
-                    number: batch,
-                    store: store.as_mut().map(|store| &mut ***store),
+                    number,
+                    store,
                     law,
                     level: resources.level,
                     monitor,
                 })?;
-                let mut results = results.lock().expect("nobody panics who holds it");
-                let (rows, states) = &mut *results;
-                rows[batch * size..][..gas.rows.len()].copy_from_slice(&gas.rows);
-                let kept = states.iter_mut().skip(batch * each);
-                for (i, state) in kept.take(each).enumerate() {
+                rows[..gas.rows.len()].copy_from_slice(&gas.rows);
+                for (i, state) in kept.iter_mut().enumerate() {
                     *state = joined(gas.free(i, Vector::default()).state(gas.kind(i).body));
                 }
             }
+            Ok(())
         };
-        let ended: Result<Vec<()>, Error> = resources
-            .each_thread(self.batches, work)?
-            .into_iter()
-            .collect();
-        ended?;
-        Ok(results.into_inner().expect("nobody panics who holds it"))
+        let ended = resources.each_thread(self.batches, work)?;
+        ended.into_iter().collect::<Result<(), Error>>()?;
+        drop(queue);
+        Ok((rows, states))
     }
 
     /// Particles of a batch.

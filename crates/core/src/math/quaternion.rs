@@ -135,6 +135,16 @@ impl Quaternion {
     /// No rotation.
     pub const IDENTITY: Self = Self::new(1.0, 0.0, 0.0, 0.0);
 
+    /// A rotation that takes the z axis to a unit vector.
+    #[inline(always)]
+    pub(crate) fn from_z(Vector { x, y, z }: Vector) -> Self {
+        if z < -0.5 {
+            // Half a turn about the x axis first.
+            return Self::new(1.0 - z, y, -x, 0.0).normalized() * Self::new(0.0, 1.0, 0.0, 0.0);
+        }
+        Self::new(1.0 + z, -y, x, 0.0).normalized()
+    }
+
     /// The only lane of one in each.
     #[inline(always)]
     pub(crate) fn in_lane(self) -> Quaternions<Scalar> {

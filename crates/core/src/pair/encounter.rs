@@ -340,7 +340,7 @@ impl Following<'_, '_> {
         let poses = [one.pose(), two.pose()];
         let (normal, first) = search.meeting(apart, touch.parts, &poses, between);
         let arms = [first, first + apart];
-        let frame = frame(normal);
+        let frame = Quaternion::from_z(normal);
         let back = frame.inverse();
         let compliance =
             one.compliance(bodies[0], back, arms[0]) + two.compliance(bodies[1], back, arms[1]);
@@ -389,16 +389,4 @@ pub(super) fn within<S: Simd>(
     let stays = square.eq(0.0) & beyond.le(0.0);
     let leaves = stays.select(f64::INFINITY, meets.select(leaves, 0.0));
     (meets.select(enters.max(0.0), 0.0), leaves)
-}
-
-/// A rotation that takes the z axis to a unit vector.
-#[inline(always)]
-fn frame(normal: Vector) -> Quaternion {
-    let Vector { x, y, z } = normal;
-    if z < -0.5 {
-        // Half a turn about the x axis first.
-        return Quaternion::new(1.0 - z, y, -x, 0.0).normalized()
-            * Quaternion::new(0.0, 1.0, 0.0, 0.0);
-    }
-    Quaternion::new(1.0 + z, -y, x, 0.0).normalized()
 }

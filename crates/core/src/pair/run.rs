@@ -14,7 +14,6 @@ use crate::threads::{Monitor, Resources};
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Encounters that a thread follows before it takes others.
 const BLOCK: usize = 256;
@@ -41,21 +40,18 @@ impl Encounters<'_> {
         let mut encounters =
             TableColumns::new("encounters", PER_ENCOUNTER, &chosen, self.count, 1)?;
         // Each block writes into its own part of each column.
-        let count = self.count.div_ceil(BLOCK);
         let mut rest = encounters.rows();
-        let sizes = (0..count).map(|number| BLOCK.min(self.count - number * BLOCK));
-        let blocks: Vec<_> = sizes.map(|size| Mutex::new(rest.split(size))).collect();
-        let (next, all) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+        let blocks = (0..self.count).step_by(BLOCK).map(|first| {
+            let rows = first..self.count.min(first + BLOCK);
+            (rest.split(rows.len()), rows)
+        });
+        let (queue, all) = (Mutex::new(blocks), Mutex::new(Vec::new()));
         let work = |_| {
             let mut follower = Follower::new(self.bodies, law, resources.level);
             let mut room = vec![Vec::new(); BLOCK];
-            loop {
-                let number = next.fetch_add(1, Ordering::Relaxed);
-                if number >= count || monitor.is_cancelled() {
-                    return Ok(());
-                }
-                let rows = number * BLOCK..self.count.min((number + 1) * BLOCK);
-                let mut table = blocks[number].lock().expect("nobody panics who holds it");
+            while !monitor.is_cancelled() {
+                let next = queue.lock().expect("nobody panics who holds it").next();
+                let Some((mut table, rows)) = next else { break };
                 let hits = Level::run_scalar(EncounterBlock {
                     encounters: self,
                     follower: &mut follower,
@@ -66,18 +62,17 @@ impl Encounters<'_> {
                     hits: &mut room,
                     table: &mut table,
                 })?;
-                all.lock()
-                    .expect("nobody panics who holds it")
-                    .push((number, hits));
+                let mut all = all.lock().expect("nobody panics who holds it");
+                all.push((rows.start, hits));
                 monitor.add_finished(rows.len() as u64);
             }
+            Ok(())
         };
-        let ended: Result<Vec<()>, Error> =
-            resources.each_thread(count, work)?.into_iter().collect();
-        ended?;
-        drop(blocks);
+        let ended = resources.each_thread(self.count.div_ceil(BLOCK), work)?;
+        ended.into_iter().collect::<Result<(), Error>>()?;
+        drop(queue);
         let mut all = all.into_inner().expect("nobody panics who holds it");
-        all.sort_by_key(|&(number, _)| number);
+        all.sort_by_key(|&(first, _)| first);
         let hits = all.into_iter().flat_map(|(_, hits)| hits).collect();
         Ok(PairTable { encounters, hits })
     }

@@ -327,17 +327,11 @@ impl Barrel {
             return None;
         }
         let axis = apart / length;
-        // Half the rotation that takes z to the axis: 1 + cos, and their vector product.
-        let attitude = if axis.z > -1.0 {
-            Quaternion::new(1.0 + axis.z, -axis.y, axis.x, 0.0).normalized()
-        } else {
-            Quaternion::new(0.0, 1.0, 0.0, 0.0)
-        };
         Some(Self {
             from: one.centre,
             axis,
             length,
-            attitude,
+            attitude: Quaternion::from_z(axis),
             radius: one.radius,
         })
     }
