@@ -437,13 +437,6 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Finds the bound of a particle.
-    #[inline(always)]
-    fn bound(&mut self, i: usize) {
-        let v = self.velocities[i];
-        self.bounds[i] = bound(v.dot(v), self.fastest);
-    }
-
     #[inline(always)]
     fn run(&mut self, law: &Law<'_>, level: Level, monitor: &Monitor) -> Result<(), Error> {
         let gas = self.gas;
@@ -582,7 +575,7 @@ impl<'a> Batch<'a> {
     }
 
     /// Writes all that it goes on from.
-    fn save(&self, store: &mut [f64]) {
+    fn save(&mut self, store: &mut [f64]) {
         let numbers = [
             self.clock,
             self.past,
@@ -600,7 +593,8 @@ impl<'a> Batch<'a> {
             let [q, r, s, t] = rotation.attitude.parts();
             [x, y, z, a, b, c, q, r, s, t, rotation.time]
         });
-        let all = numbers.into_iter().chain(self.whole.counts());
+        let counts = self.whole.counts().map(|count| *count);
+        let all = numbers.into_iter().chain(counts);
         let rows = (self.gas.samples + 1) * self.gas.width();
         let padding = std::iter::repeat_n(0.0, rows - self.rows.len());
         let rows = self.rows.iter().copied().chain(padding);
@@ -634,7 +628,9 @@ impl<'a> Batch<'a> {
         self.candidates = candidates as u64;
         (self.fastest, self.until, self.upto) = (fastest, until, upto as u64);
         self.slowest = slowest;
-        self.whole = Whole::of(&numbers[9..]);
+        for (count, number) in self.whole.counts().into_iter().zip(&numbers[9..]) {
+            *count = *number;
+        }
         let (rows, rest) = rest.split_at((self.gas.samples + 1) * self.gas.width());
         self.rows.extend(&rows[..looks as usize]);
         let (particles, heated) = rest.split_at(self.velocities.len() * (3 + ROTATION));
@@ -741,7 +737,8 @@ impl<'a> Batch<'a> {
             }
             if !follower.smooth_balls() {
                 for i in candidates.iter().flat_map(|candidate| candidate.pair) {
-                    self.bound(i);
+                    let v = self.velocities[i];
+                    self.bounds[i] = bound(v.dot(v), self.fastest);
                 }
             }
             candidates.clear();
@@ -873,7 +870,9 @@ impl<'a> Batch<'a> {
     fn look(&mut self) {
         self.heat_all();
         let mut rows = std::mem::take(&mut self.rows);
-        rows.extend(self.whole.row(self.time(), self.exponent));
+        rows.push(self.time());
+        rows.extend(self.whole.counts().map(|count| *count));
+        rows.push(f64::from(self.exponent));
         let mut start = 0;
         for (kind, &end) in self.gas.kinds.iter().zip(&self.ends) {
             let mut sums = [0.0; GAS_KIND.len()];

@@ -56,37 +56,17 @@ pub struct Whole {
 
 impl Whole {
     /// All of them, in the order of [`GAS_WHOLE`].
-    pub fn counts(&self) -> [f64; GAS_WHOLE.len() - 2] {
+    pub fn counts(&mut self) -> [&mut f64; GAS_WHOLE.len() - 2] {
         [
-            self.attempts,
-            self.collisions,
-            self.contacts,
-            self.collapses,
-            self.creating,
-            self.created,
-            self.steps,
-            self.beyond,
+            &mut self.attempts,
+            &mut self.collisions,
+            &mut self.contacts,
+            &mut self.collapses,
+            &mut self.creating,
+            &mut self.created,
+            &mut self.steps,
+            &mut self.beyond,
         ]
-    }
-
-    /// From [`Self::counts`].
-    pub fn of(counts: &[f64]) -> Self {
-        Self {
-            attempts: counts[0],
-            collisions: counts[1],
-            contacts: counts[2],
-            collapses: counts[3],
-            creating: counts[4],
-            created: counts[5],
-            steps: counts[6],
-            beyond: counts[7],
-        }
-    }
-
-    /// [`GAS_WHOLE`].
-    pub fn row(&self, time: f64, exponent: i32) -> impl Iterator<Item = f64> {
-        let first = std::iter::once(time).chain(self.counts());
-        first.chain(std::iter::once(f64::from(exponent)))
     }
 }
 

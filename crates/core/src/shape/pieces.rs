@@ -166,16 +166,11 @@ impl Piece {
     }
 
     pub(super) fn ball(centre: Vector, radius: f64) -> Self {
-        let square = radius * radius;
         Self {
             kind: PieceKind::Ball(centre, radius),
             ball: radius,
             reach: centre.norm(),
-            ..Self::convex(
-                vec![centre],
-                vec![Feature::new(centre, &[])],
-                Symmetric::diagonal([square; 3]),
-            )
+            ..Self::ellipsoid([radius; 3], Quaternion::IDENTITY, centre)
         }
     }
 
