@@ -466,7 +466,7 @@ impl<'a> Batch<'a> {
         let mut looks = self.rows.len() / gas.width();
         while looks <= gas.samples {
             if self.candidates == self.upto || self.clock > self.until {
-                self.follow(&mut followers, law, level)?;
+                self.follow(&mut followers)?;
                 if monitor.is_cancelled() {
                     return Ok(());
                 }
@@ -513,7 +513,7 @@ impl<'a> Batch<'a> {
             self.waits += count;
             (self.candidates, self.clock) = (row + end as u64, clock);
             if count == most || end < ROW {
-                self.follow(&mut followers, law, level)?;
+                self.follow(&mut followers)?;
             }
             while looks <= gas.samples && self.whole.collisions >= each * looks as f64 {
                 self.look();
@@ -684,12 +684,7 @@ impl<'a> Batch<'a> {
 
     /// Decides the candidates that wait, and follows the encounters of those that meet.
     #[inline(always)]
-    fn follow(
-        &mut self,
-        followers: &mut [Follower<'_, '_>],
-        law: &Law<'_>,
-        level: Level,
-    ) -> Result<(), Error> {
+    fn follow(&mut self, followers: &mut [Follower<'_, '_>]) -> Result<(), Error> {
         if self.waits == 0 {
             return Ok(());
         }
@@ -704,7 +699,8 @@ impl<'a> Batch<'a> {
                 meetings,
                 approaches,
             } = &mut waiting;
-            let decided = level.run(Candidates {
+            let law = follower.law;
+            let decided = follower.level.run(Candidates {
                 candidates,
                 velocities: &mut self.velocities,
                 bounds: &mut self.bounds,

@@ -141,29 +141,7 @@ impl WithSimd for Following<'_, '_> {
     type Output = End;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        self.follow()
-    }
-}
-
-impl Outcome<FreeBody> {
-    /// With the attitudes of the axes that the bodies were given in.
-    #[inline(always)]
-    pub fn given(self, bodies: [&Partner; 2]) -> Outcome {
-        let [one, two] = &self.states;
-        Outcome {
-            states: [one.state(bodies[0]), two.state(bodies[1])],
-            time: self.time,
-            contacts: self.contacts,
-            ending: self.ending,
-            steps: self.steps,
-        }
-    }
-}
-
-impl Following<'_, '_> {
-    #[inline(always)]
-    fn follow(mut self) -> End {
+    fn with_simd<S: Simd>(mut self, _: S) -> End {
         let bodies = self.bodies;
         let reach = bodies[0].reach + bodies[1].reach;
         let search = PairSearch {
@@ -254,7 +232,24 @@ impl Following<'_, '_> {
             steps,
         })
     }
+}
 
+impl Outcome<FreeBody> {
+    /// With the attitudes of the axes that the bodies were given in.
+    #[inline(always)]
+    pub fn given(self, bodies: [&Partner; 2]) -> Outcome {
+        let [one, two] = &self.states;
+        Outcome {
+            states: [one.state(bodies[0]), two.state(bodies[1])],
+            time: self.time,
+            contacts: self.contacts,
+            ending: self.ending,
+            steps: self.steps,
+        }
+    }
+}
+
+impl Following<'_, '_> {
     /// A body after a time in which it turns as is known, or is found here.
     #[inline(always)]
     fn turn(&mut self, i: usize, time: f64, known: Option<(Quaternion, Vector)>) {

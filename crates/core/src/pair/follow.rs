@@ -15,8 +15,8 @@ use std::slice::Iter;
 /// Follows encounters of two bodies.
 pub(crate) struct Follower<'a, 'b> {
     bodies: [&'a Partner; 2],
-    law: &'a Law<'b>,
-    level: Level,
+    pub law: &'a Law<'b>,
+    pub level: Level,
     axial: Option<LanePair<'a, 'b, AxialBody>>,
     clumps: Option<LanePair<'a, 'b, ClumpBody>>,
     between: Vec<Between>,

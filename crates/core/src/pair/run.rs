@@ -55,7 +55,6 @@ impl Encounters<'_> {
                 let hits = Level::run_scalar(EncounterBlock {
                     encounters: self,
                     follower: &mut follower,
-                    law,
                     given: given.map(|given| &given[rows.clone()]),
                     rows: rows.clone(),
                     contacts,
@@ -82,7 +81,6 @@ impl Encounters<'_> {
 struct EncounterBlock<'a, 'b, 'c, 'd> {
     encounters: &'a Encounters<'a>,
     follower: &'a mut Follower<'c, 'd>,
-    law: &'a Law<'d>,
     given: Option<&'a [[PairState; 2]]>,
     rows: Range<usize>,
     contacts: bool,
@@ -99,7 +97,6 @@ impl WithSimd for EncounterBlock<'_, '_, '_, '_> {
         let Self {
             encounters,
             follower,
-            law,
             given,
             rows,
             contacts,
@@ -136,6 +133,7 @@ impl WithSimd for EncounterBlock<'_, '_, '_, '_> {
             hits[row].truncate(hit.number as usize);
             hits[row].push(*hit);
         };
+        let law = follower.law;
         let chance = |row, contact| of_impact(seed, first + row as u64, contact);
         let ends = follower.follow(&approaches, &chance, Some(&mut add));
         let mut found = Vec::new();
