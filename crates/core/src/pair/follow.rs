@@ -92,9 +92,7 @@ impl<'a, 'b> Follower<'a, 'b> {
             }
             let Approach { mut states, passed } = *approach;
             for i in 0..2 {
-                if passed[i] > 0.0 {
-                    states[i].turn(self.bodies[i], passed[i]);
-                }
+                states[i].turn(self.bodies[i], passed[i]);
             }
             self.between.fill(Between::default());
             *end = Some(Level::run_scalar(Following {

@@ -65,8 +65,8 @@ impl Rigid {
             let positive = axis.is_finite() && axis > 0.0;
             Error::unless(positive, "semi_axes", axis, ALLOWED)?;
         }
-        let [most, least] =
-            [f64::max, f64::min].map(|of| semi_axes.into_iter().fold(semi_axes[0], of));
+        let [a, b, c] = semi_axes;
+        let (most, least) = (a.max(b).max(c), a.min(b).min(c));
         Error::unless(
             most <= 1000.0 * least * (1.0 + 4.0 * f64::EPSILON),
             "semi_axes",

@@ -33,12 +33,12 @@ struct Quickhull<'a> {
 }
 
 impl Quickhull<'_> {
-    fn add(&mut self, corners: [usize; 3]) -> usize {
+    fn add(&mut self, corners: [usize; 3], beyond: [usize; 3]) -> usize {
         let [a, b, c] = corners.map(|i| self.points[i]);
         let normal = (b - a).cross(c - a);
         self.faces.push(Face {
             corners,
-            beyond: [0; 3],
+            beyond,
             normal,
             up: normal / normal.norm().max(f64::MIN_POSITIVE),
             outside: Vec::new(),
@@ -97,15 +97,10 @@ impl Quickhull<'_> {
             return None;
         }
         let (b, c) = if height < 0.0 { (b, c) } else { (c, b) };
-        for corners in [[a, b, c], [d, b, a], [d, c, b], [d, a, c]] {
-            self.add(corners);
-        }
-        for (face, beyond) in [[1, 2, 3], [2, 0, 3], [3, 0, 1], [1, 0, 2]]
-            .into_iter()
-            .enumerate()
-        {
-            self.faces[face].beyond = beyond;
-        }
+        self.add([a, b, c], [1, 2, 3]);
+        self.add([d, b, a], [2, 0, 3]);
+        self.add([d, c, b], [3, 0, 1]);
+        self.add([d, a, c], [1, 0, 2]);
         self.give((0..count).collect(), &[0, 1, 2, 3]);
         Some(())
     }
@@ -139,12 +134,8 @@ impl Quickhull<'_> {
         let first = self.faces.len();
         let count = horizon.len();
         for (k, ([from, to], next, back)) in horizon.into_iter().enumerate() {
-            let face = self.add([from, to, eye]);
-            self.faces[face].beyond = [
-                next,
-                first + (k + 1) % count,
-                first + (k + count - 1) % count,
-            ];
+            let (after, before) = ((k + 1) % count, (k + count - 1) % count);
+            let face = self.add([from, to, eye], [next, first + after, first + before]);
             self.faces[next].beyond[back] = face;
         }
         let new: Vec<_> = (first..self.faces.len()).collect();

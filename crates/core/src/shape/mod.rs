@@ -216,3 +216,9 @@ fn check_distance(name: &'static str, value: f64) -> Result<(), Error> {
     let positive = value.is_finite() && value >= 0.0;
     Error::unless(positive, name, value, "finite and >= 0 (m)")
 }
+
+/// Checks that numbers which follow from parameters, of which this one sets their scale, neither overflow nor underflow.
+fn check_magnitude(name: &'static str, value: f64, derived: [f64; 5]) -> Result<(), Error> {
+    let allowed = "such that mass and inertia neither overflow nor underflow";
+    Error::unless_beyond(derived.iter().all(|x| x.is_normal()), name, value, allowed)
+}

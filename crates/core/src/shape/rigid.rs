@@ -1,5 +1,6 @@
 //! Bodies of any shape: mass, principal axes, and what can touch the plane.
 
+use super::check_magnitude;
 use super::pieces::{Extent, Piece};
 use super::surface::{RigidSurface, each_surface};
 use super::top::Top;
@@ -210,12 +211,16 @@ impl Rigid {
         extent: Extent,
         surface: impl FnOnce(Quaternion) -> Result<RigidSurface, Error>,
     ) -> Result<Self, Error> {
-        let (top, axes) = principal(&inertia, unit)?;
+        let (moments, axes) = inertia.tensor.principal();
+        let scale = 1.0 / (inertia.mass * unit * unit);
+        let moments = moments.map(|moment| scale * moment);
+        let [a, b, c] = moments;
+        check_magnitude("density", inertia.mass, [inertia.mass, scale, a, b, c])?;
         Ok(Self {
             inertia,
             unit,
             axes,
-            top,
+            top: Top::new(moments)?,
             surface: surface(axes)?,
             extent,
         })
@@ -305,16 +310,4 @@ pub(crate) fn up(attitude: Quaternion) -> Vector {
         2.0 * (y * z + w * x),
         1.0 - 2.0 * (x * x + y * y),
     )
-}
-
-/// The principal moments over mR², and the rotation from the principal axes.
-fn principal(inertia: &Inertia, unit: f64) -> Result<(Top, Quaternion), Error> {
-    let (moments, axes) = inertia.tensor.principal();
-    let scale = 1.0 / (inertia.mass * unit * unit);
-    let moments = moments.map(|moment| scale * moment);
-    let all = [inertia.mass, scale, moments[0], moments[1], moments[2]];
-    let finite = all.iter().all(|x| x.is_normal());
-    let allowed = "such that mass and inertia neither overflow nor underflow";
-    Error::unless_beyond(finite, "density", inertia.mass, allowed)?;
-    Ok((Top::new(moments)?, axes))
 }

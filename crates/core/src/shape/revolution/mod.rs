@@ -18,7 +18,7 @@ pub use spherocylinder::Spherocylinder;
 pub use spheroid::Spheroid;
 
 use super::pieces::Piece;
-use super::{check_density, check_distance, check_length};
+use super::{check_density, check_distance, check_length, check_magnitude};
 use crate::Error;
 use crate::math::{Quaternion, Vector};
 use hollow::{INERTIA, WALL, made};
@@ -177,12 +177,7 @@ fn representable<S: Shape>(shape: S, name: &'static str) -> Result<S, Error> {
         solid.scaled.transverse,
         solid.scaled.axial,
     ];
-    Error::unless_beyond(
-        all.iter().all(|x| x.is_normal()),
-        name,
-        solid.unit,
-        "such that mass and inertia neither overflow nor underflow",
-    )?;
+    check_magnitude(name, solid.unit, all)?;
     Ok(shape)
 }
 
