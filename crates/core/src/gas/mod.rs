@@ -193,10 +193,8 @@ impl Gas<'_> {
 
     /// Particles of a batch.
     fn each(&self) -> usize {
-        self.kinds
-            .iter()
-            .map(|kind| kind.particles / self.batches)
-            .sum()
+        let each = |kind: &Species<'_>| kind.particles / self.batches;
+        self.kinds.iter().map(each).sum()
     }
 
     /// The largest reach.
@@ -215,12 +213,8 @@ impl Gas<'_> {
         Error::unless(holds, "collisions", self.collisions, "finite and > 0")?;
         let each = self.each() as f64;
         let holds = each <= f64::from(u32::MAX);
-        Error::unless(
-            holds,
-            "particles",
-            each,
-            "less than 2³² for each of the batches",
-        )?;
+        let allowed = "less than 2³² for each of the batches";
+        Error::unless(holds, "particles", each, allowed)?;
         for kind in &self.kinds {
             let power = self.heating * kind.body.inverse_mass;
             let some = "0, or such that velocities neither overflow nor underflow (W)";
@@ -242,12 +236,8 @@ impl Gas<'_> {
             let rate = self.density * across * (t * inverse).sqrt();
             let some =
                 "such that the times between collisions neither overflow nor underflow (1/m³)";
-            Error::unless(
-                MODERATE.contains(&rate),
-                "number_density",
-                self.density,
-                some,
-            )?;
+            let holds = MODERATE.contains(&rate);
+            Error::unless(holds, "number_density", self.density, some)?;
         }
         Ok(())
     }

@@ -30,10 +30,10 @@ impl<'a, 'b> Follower<'a, 'b> {
             bodies,
             law,
             level,
-            clumps: axial
-                .is_none()
-                .then(|| LanePair::new(bodies, law))
-                .flatten(),
+            clumps: match axial {
+                Some(_) => None,
+                None => LanePair::new(bodies, law),
+            },
             axial,
             between: vec![Between::default(); bodies[0].pieces.len() * bodies[1].pieces.len()],
             ends: Vec::new(),

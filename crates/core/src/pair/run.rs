@@ -161,12 +161,8 @@ impl WithSimd for EncounterBlock<'_, '_, '_, '_> {
 fn check_apart(bodies: [&Partner; 2], states: &[PairState; 2]) -> Result<(), Error> {
     let width = narrowest(bodies, states);
     let apart = width >= -OVERLAP * (bodies[0].reach + bodies[1].reach);
-    Error::unless(
-        apart,
-        "states.position",
-        width,
-        "such that no bodies overlap; this is the narrowest gap (m)",
-    )
+    let allowed = "such that no bodies overlap; this is the narrowest gap (m)";
+    Error::unless(apart, "states.position", width, allowed)
 }
 
 /// The error of an encounter that cannot be followed.

@@ -48,12 +48,8 @@ impl Rigid {
         }
         let (below, above) = (half - blunt, half - tip);
         let smaller = below.max(above) > 0.0;
-        Error::unless(
-            smaller,
-            "tip",
-            tip,
-            "less than width/2, as blunt_end is not",
-        )?;
+        let allowed = "less than width/2, as blunt_end is not";
+        Error::unless(smaller, "tip", tip, allowed)?;
         // The arc of radius ϱ, its centre at (z, width/2 − ϱ) from that of the blunt cap: z² = below (2ϱ − width/2 − blunt), (D − z)² =
         // above (2ϱ − width/2 − tip), D the distance of the caps' centres; both have one solution 0 ≤ z ≤ D.
         let distance = length - blunt - tip;

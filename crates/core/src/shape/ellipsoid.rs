@@ -67,11 +67,7 @@ impl Rigid {
         }
         let [a, b, c] = semi_axes;
         let (most, least) = (a.max(b).max(c), a.min(b).min(c));
-        Error::unless(
-            most <= 1000.0 * least * (1.0 + 4.0 * f64::EPSILON),
-            "semi_axes",
-            least,
-            ALLOWED,
-        )
+        let holds = most <= 1000.0 * least * (1.0 + 4.0 * f64::EPSILON);
+        Error::unless(holds, "semi_axes", least, ALLOWED)
     }
 }

@@ -186,14 +186,11 @@ pub fn triangles(points: &[Vector]) -> Option<Vec<[usize; 3]>> {
     for (number, &place) in places.iter().enumerate() {
         numbers.entry(bits(place)).or_insert(number);
     }
-    let mut order: Vec<_> = (0..hull.faces.len())
-        .filter(|&face| !hull.faces[face].is_gone && hull.faces[face].normal.norm() > 0.0)
-        .collect();
     let area = |&face: &usize| hull.faces[face].normal.norm();
+    let left = (0..hull.faces.len()).filter(|&face| !hull.faces[face].is_gone);
+    let mut order: Vec<_> = left.clone().filter(|face| area(face) > 0.0).collect();
     order.sort_by(|i, j| area(j).total_cmp(&area(i)));
-    let mut free: HashSet<_> = (0..hull.faces.len())
-        .filter(|&face| !hull.faces[face].is_gone)
-        .collect();
+    let mut free: HashSet<_> = left.collect();
     let mut found = Vec::new();
     for seed in order {
         if !free.remove(&seed) {
@@ -201,11 +198,9 @@ pub fn triangles(points: &[Vector]) -> Option<Vec<[usize; 3]>> {
         }
         let up = hull.faces[seed].up;
         let flat = |face: usize| {
-            let Face {
-                corners, normal, ..
-            } = &hull.faces[face];
+            let face = &hull.faces[face];
             let within = |&i: &usize| hull.height(seed, i).abs() < COPLANAR;
-            corners.iter().all(within) && normal.dot(up) > -COPLANAR
+            face.corners.iter().all(within) && face.normal.dot(up) > -COPLANAR
         };
         let mut one = vec![seed];
         let mut at = 0;

@@ -175,10 +175,7 @@ impl Piece {
     }
 
     fn convex(corners: Vec<Vector>, features: Vec<Feature>, round: Symmetric) -> Self {
-        let far = corners
-            .iter()
-            .map(|corner| corner.norm())
-            .fold(0.0, f64::max);
+        let distances = corners.iter().map(|corner| corner.norm());
         let (squares, _) = round.principal();
         let [a, b, c] = squares.map(|square| square.max(0.0).sqrt());
         let (least, most) = (a.min(b).min(c), a.max(b).max(c));
@@ -190,11 +187,11 @@ impl Piece {
         };
         Self {
             kind: PieceKind::Convex,
+            reach: distances.fold(0.0, f64::max) + (most - ball),
             corners,
             features,
             round: Round::Ellipsoid(round),
             ball,
-            reach: far + (most - ball),
             extents: [0.0; 3],
         }
     }

@@ -94,10 +94,8 @@ pub(super) fn solid(
     let mut vertices: Vec<usize> = triangles.as_flattened().to_vec();
     vertices.sort_unstable();
     vertices.dedup();
-    let inside = vertices
-        .iter()
-        .fold(Vector::default(), |sum, &i| sum + points[i])
-        / vertices.len() as f64;
+    let corners = vertices.iter().map(|&i| points[i]);
+    let inside = corners.fold(Vector::default(), Vector::add) / vertices.len() as f64;
     let mut moments = VolumeMoments::default();
     for corners in triangles {
         let [a, b, c] = corners.map(|i| points[i] - inside);

@@ -253,10 +253,8 @@ impl Rigid {
 
     /// The distance in m from the centre of mass to the plane that touches the body with this outward normal, in the axes that it was given in.
     pub fn support(&self, normal: Vector) -> f64 {
-        self.unit
-            * self
-                .surface
-                .support(self.axes.inverse().rotate(normal) * -1.0)
+        let up = self.axes.inverse().rotate(normal) * -1.0;
+        self.unit * self.surface.support(up)
     }
 
     /// The place of the part with this number, from 0, that is nearest to a plane with this normal, from the centre of mass in m; of several the
@@ -267,11 +265,8 @@ impl Rigid {
             let place = points.position(|point| point.number as usize == number);
             place.expect("the number of a part")
         }, _convex => number);
-        let back = self.axes.inverse();
-        let nearest = self
-            .surface
-            .nearest(part, back.rotate(up), back.rotate(turning));
-        self.axes.rotate(nearest) * self.unit
+        let [up, turning] = [up, turning].map(|v| self.axes.inverse().rotate(v));
+        self.axes.rotate(self.surface.nearest(part, up, turning)) * self.unit
     }
 
     /// The parts with which it touches another body, in m and the principal axes, where they are known.

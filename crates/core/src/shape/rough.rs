@@ -128,19 +128,12 @@ impl Rigid {
         roughness: &Roughness<'_>,
     ) -> Result<Self, Error> {
         super::clump::check(balls)?;
-        let smallest = balls
-            .iter()
-            .map(|ball| ball.radius)
-            .fold(f64::INFINITY, f64::min);
-        roughness.check(smallest)?;
+        let radii = balls.iter().map(|ball| ball.radius);
+        roughness.check(radii.fold(f64::INFINITY, f64::min))?;
         let surface = FreeSurface::new(balls, barrel);
         let free = surface.draw(roughness.seed, 0).is_some();
-        Error::unless(
-            free,
-            "spheres",
-            balls.len(),
-            "such that no other covers all of one",
-        )?;
+        let allowed = "such that no other covers all of one";
+        Error::unless(free, "spheres", balls.len(), allowed)?;
         let all = balls.len() + roughness.asperities;
         let parts = (0..all).map(|i| match balls.get(i) {
             Some(ball) => *ball,
@@ -153,12 +146,8 @@ impl Rigid {
 
 impl Roughness<'_> {
     fn check(&self, smallest: f64) -> Result<(), Error> {
-        Error::unless(
-            self.asperities > 0,
-            "asperities",
-            self.asperities,
-            "one or more",
-        )?;
+        let allowed = "one or more";
+        Error::unless(self.asperities > 0, "asperities", self.asperities, allowed)?;
         let fits = self.radius > 0.0 && self.radius <= smallest;
         let allowed = "> 0, and no larger than the smallest sphere of the body (m)";
         Error::unless(fits, "asperity_radius", self.radius, allowed)?;

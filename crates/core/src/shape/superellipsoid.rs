@@ -90,12 +90,8 @@ impl Rigid {
         let [least, most] = EXPONENTS;
         for n in exponents {
             let within = (least..=most).contains(&n);
-            Error::unless(
-                within,
-                "exponents",
-                n,
-                "two numbers (n1, n2), each from 1.1 to 100",
-            )?;
+            let allowed = "two numbers (n1, n2), each from 1.1 to 100";
+            Error::unless(within, "exponents", n, allowed)?;
         }
         let [a, b, c] = semi_axes;
         let [e1, e2] = exponents.map(|n| 2.0 / n);

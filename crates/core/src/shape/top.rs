@@ -44,12 +44,8 @@ impl Top {
             && c > 0.0
             && most < f64::INFINITY
             && most <= (a + b + c - most) * (1.0 + 8.0 * f64::EPSILON);
-        Error::unless(
-            holds,
-            "inertia",
-            most,
-            "positive, and no larger than the sum of the other two moments",
-        )?;
+        let allowed = "positive, and no larger than the sum of the other two moments";
+        Error::unless(holds, "inertia", most, allowed)?;
         let (moments, symmetry) = without_rounding(moments);
         let asymmetry = asymmetry(moments).min(1.0);
         let [a, b, c] = moments;

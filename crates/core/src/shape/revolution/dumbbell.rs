@@ -210,17 +210,10 @@ impl Shape for Dumbbell {
 
     fn hollow(self, wall: f64) -> Result<Self, Error> {
         let one_material = self.radius[0] == self.radius[1] || self.density[0] == self.density[1];
-        Error::unless(
-            one_material,
-            "wall",
-            wall,
-            "left out where both radius and density differ",
-        )?;
-        let wall = hollow::checked(
-            wall,
-            self.unit(),
-            (self.unit(), "at most the larger radius (m)"),
-        )?;
+        let allowed = "left out where both radius and density differ";
+        Error::unless(one_material, "wall", wall, allowed)?;
+        let thickest = (self.unit(), "at most the larger radius (m)");
+        let wall = hollow::checked(wall, self.unit(), thickest)?;
         representable(Self { wall, ..self }, "radius")
     }
 }

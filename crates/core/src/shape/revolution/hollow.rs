@@ -32,12 +32,9 @@ pub(super) fn made<S: Shape>(
 ) -> Result<Solid, Error> {
     let [is_full, has_its_own] = [place, place + 1].map(|place| given.is_absent(place));
     let inertia = given.pair(place + 1);
-    Error::unless(
-        is_full || has_its_own,
-        "inertia",
-        inertia[0],
-        "left out where there is a wall",
-    )?;
+    let allowed = "left out where there is a wall";
+    let holds = is_full || has_its_own;
+    Error::unless(holds, "inertia", inertia[0], allowed)?;
     let body = if is_full {
         shape.into()
     } else {
@@ -113,20 +110,14 @@ impl Solid {
         }
         let [transverse, axial] = moments;
         let rounding = 1.0 + 4.0 * f64::EPSILON;
-        Error::unless(
-            axial <= 2.0 * transverse * rounding,
-            "inertia",
-            axial,
-            "about the axis at most twice that across it (kg m^2)",
-        )?;
+        let allowed = "about the axis at most twice that across it (kg m^2)";
+        let holds = axial <= 2.0 * transverse * rounding;
+        Error::unless(holds, "inertia", axial, allowed)?;
         // The sum of all three is twice ∫r² dm about the centre of mass.
         let most = 2.0 * self.mass * self.farthest().powi(2);
-        Error::unless(
-            2.0 * transverse + axial <= most * rounding,
-            "inertia",
-            transverse,
-            "so small that the matter, of this mass, is within the surface (kg m^2)",
-        )?;
+        let allowed = "so small that the matter, of this mass, is within the surface (kg m^2)";
+        let holds = 2.0 * transverse + axial <= most * rounding;
+        Error::unless(holds, "inertia", transverse, allowed)?;
         let unit = self.mass * (self.unit * self.unit);
         Ok(Self {
             transverse_inertia: transverse,

@@ -64,12 +64,9 @@ impl Spheroid {
             cavity: None,
         };
         let ratio = (polar / equatorial).max(equatorial / polar);
-        Error::unless(
-            ratio <= MOST_ASPHERICAL * (1.0 + 4.0 * f64::EPSILON),
-            "polar",
-            polar,
-            "between 1/1000 and 1000 times the equatorial semi-axis",
-        )?;
+        let allowed = "between 1/1000 and 1000 times the equatorial semi-axis";
+        let holds = ratio <= MOST_ASPHERICAL * (1.0 + 4.0 * f64::EPSILON);
+        Error::unless(holds, "polar", polar, allowed)?;
         representable(body, "equatorial")
     }
 
