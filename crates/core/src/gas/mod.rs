@@ -187,7 +187,6 @@ impl Gas<'_> {
         };
         let ended = resources.each_thread(self.batches, work)?;
         ended.into_iter().collect::<Result<(), Error>>()?;
-        drop(queue);
         Ok((rows, states))
     }
 

@@ -69,7 +69,6 @@ impl Encounters<'_> {
         };
         let ended = resources.each_thread(self.count.div_ceil(BLOCK), work)?;
         ended.into_iter().collect::<Result<(), Error>>()?;
-        drop(queue);
         let mut all = all.into_inner().expect("nobody panics who holds it");
         all.sort_by_key(|&(first, _)| first);
         let hits = all.into_iter().flat_map(|(_, hits)| hits).collect();
