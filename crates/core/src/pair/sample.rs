@@ -114,18 +114,17 @@ impl Encounters<'_> {
     /// The bodies of an encounter, where they come through the sphere.
     #[inline(always)]
     pub(super) fn draw(&self, mut draws: Draws<'_>) -> [PairState; 2] {
-        let (places, velocities) = if self.bodies[1].is_plane() {
+        let moving = if self.bodies[1].is_plane() {
             self.onto_plane(&mut draws)
         } else {
             self.in_space(&mut draws)
         };
-        let mut states = [PairState {
-            position: places[0],
-            velocity: velocities[0],
+        let mut states = moving.map(|[position, velocity]| PairState {
+            position,
+            velocity,
             attitude: Quaternion::IDENTITY,
             spin: Vector::default(),
-        }; 2];
-        (states[1].position, states[1].velocity) = (places[1], velocities[1]);
+        });
         for (i, state) in states.iter_mut().enumerate() {
             if self.bodies[i].is_plane() {
                 continue;
@@ -143,16 +142,15 @@ impl Encounters<'_> {
         states
     }
 
-    /// Places and velocities of two bodies; their centre of mass is at the origin.
+    /// The place and the velocity of each of two bodies; their centre of mass is at the origin.
     #[inline(always)]
-    fn in_space(&self, draws: &mut Draws<'_>) -> ([Vector; 2], [Vector; 2]) {
+    fn in_space(&self, draws: &mut Draws<'_>) -> [[Vector; 2]; 2] {
         let [one, two] = [self.bodies[0].inverse_mass, self.bodies[1].inverse_mass];
         let reach = self.reach();
         let (height, (sine, cosine)) = draws.turn(1);
-        let level = (1.0 - (2.0 * height - 1.0) * (2.0 * height - 1.0))
-            .max(0.0)
-            .sqrt();
-        let u = Vector::new(level * cosine, level * sine, 2.0 * height - 1.0);
+        let z = 2.0 * height - 1.0;
+        let level = (1.0 - z * z).max(0.0).sqrt();
+        let u = Vector::new(level * cosine, level * sine, z);
         let (square, around) = draws.turn(1);
         let b = match self.impact_parameter {
             Some(b) => b / reach,
@@ -161,32 +159,27 @@ impl Encounters<'_> {
         let across = Vector::new(-sine, cosine, 0.0);
         let around = (pack(around.0), pack(around.1));
         let apart = approach(u.in_lane(), across.in_lane(), pack(b), around).lane(0) * reach;
-        let (speed, drift) = match self.meeting {
-            Meeting::Speed(speed) => (speed, Vector::default()),
-            Meeting::Temperatures(temperatures) => {
+        let whole = one + two;
+        let (speed, drift, [w1, w2]) = match self.meeting {
+            Meeting::Speed(speed) => (speed, Vector::default(), [one / whole, two / whole]),
+            Meeting::Temperatures([t1, t2]) => {
                 let (a, b) = draws.pair();
                 let speed = (-2.0 * self.variance() * ln((1.0 - a) * (1.0 - b))).sqrt();
-                let [s1, s2] = [temperatures[0] * one, temperatures[1] * two];
-                let normals = Vector::from(draws.normals());
-                (speed, normals * (s1 * s2 / (s1 + s2)).sqrt())
+                let (s1, s2) = (t1 * one, t2 * two);
+                let drift = Vector::from(draws.normals()) * (s1 * s2 / (s1 + s2)).sqrt();
+                // With weights that make the rest independent of u.
+                (speed, drift, [s1 / (s1 + s2), s2 / (s1 + s2)])
             }
         };
-        // With weights that make the rest independent of u.
-        let [w1, w2] = match self.meeting {
-            Meeting::Speed(_) => [one / (one + two), two / (one + two)],
-            Meeting::Temperatures([t1, t2]) => {
-                let whole = t1 * one + t2 * two;
-                [t1 * one / whole, t2 * two / whole]
-            }
-        };
-        let places = [apart * (one / (one + two)), apart * (-two / (one + two))];
-        let velocities = [u.mul_add(speed * w1, drift), u.mul_add(-speed * w2, drift)];
-        (places, velocities)
+        [
+            [apart * (one / whole), u.mul_add(speed * w1, drift)],
+            [apart * (-two / whole), u.mul_add(-speed * w2, drift)],
+        ]
     }
 
     /// Those of a body over a plane.
     #[inline(always)]
-    fn onto_plane(&self, draws: &mut Draws<'_>) -> ([Vector; 2], [Vector; 2]) {
+    fn onto_plane(&self, draws: &mut Draws<'_>) -> [[Vector; 2]; 2] {
         let velocity = match self.meeting {
             Meeting::Speed(speed) => Vector::new(0.0, 0.0, -speed),
             Meeting::Temperatures(_) => {
@@ -197,11 +190,8 @@ impl Encounters<'_> {
                 Vector::new(part * x, part * y, -(-2.0 * variance * ln(1.0 - a)).sqrt())
             }
         };
-        let none = Vector::default();
-        (
-            [Vector::new(0.0, 0.0, self.reach()), none],
-            [velocity, none],
-        )
+        let place = Vector::new(0.0, 0.0, self.reach());
+        [[place, velocity], [Vector::default(); 2]]
     }
 }
 

@@ -43,22 +43,15 @@ fn cyclic(x: f64, y: f64) -> impl Iterator<Item = Vector> {
 
 /// Vertices about the centre, and triangles of them.
 fn solid(given: &[Argument<'_>]) -> Result<Form, Error> {
-    let cube = || corners([2.0; 3]);
+    let cube = corners([2.0; 3]);
     let (centre, [x, y, z]) = (Vector::default(), UNITS);
     let (edge, points, triangles): (f64, Vec<Vector>, &str) = match given.whole(0) {
         4 => (
             8.0_f64.sqrt(),
-            cube()
-                .into_iter()
-                .filter(|p| p.x * p.y * p.z > 0.0)
-                .collect(),
+            cube.into_iter().filter(|p| p.x * p.y * p.z > 0.0).collect(),
             "120 320 310 312",
         ),
-        6 => (
-            2.0,
-            cube(),
-            "620 640 540 510 564 567 320 310 362 367 351 357",
-        ),
+        6 => (2.0, cube, "620 640 540 510 564 567 320 310 362 367 351 357"),
         8 => (
             2.0_f64.sqrt(),
             vec![centre - x, centre - y, centre - z, z, y, x],
@@ -66,8 +59,7 @@ fn solid(given: &[Argument<'_>]) -> Result<Form, Error> {
         ),
         12 => (
             2.0 / GOLDEN,
-            cube()
-                .into_iter()
+            cube.into_iter()
                 .chain(cyclic(1.0 / GOLDEN, GOLDEN))
                 .collect(),
             "i59 i1g i19 20c 208 2a8 e1g e0c e0g e3h e2c e2h 408 40g 4ig 4a8 46d 46a f4i fi5 f4d b19 be1 be3 b59 bf7 bf5 j2a j6a j2h j6d jfd \

@@ -106,19 +106,14 @@ impl Rigid {
             centre: Vector::new(0.0, 0.0, centre),
             tensor: Symmetric::diagonal([transverse, transverse, axial]),
         };
-        let band = |scale: f64| {
-            move |arc: &Band| {
-                let [z, r] = arc.centre;
-                Band::new(
-                    [(z - centre) / scale, r / scale],
-                    arc.radius / scale,
-                    arc.ends,
-                )
-            }
+        let band = |arc: &Band, scale: f64| {
+            let [z, r] = arc.centre;
+            let place = [(z - centre) / scale, r / scale];
+            Band::new(place, arc.radius / scale, arc.ends)
         };
-        let unit = touching.iter().map(|arc| band(1.0)(arc).reach);
-        let unit = unit.fold(0.0, f64::max);
-        let bands = touching.iter().map(band(unit)).collect();
+        let reaches = touching.iter().map(|arc| band(arc, 1.0).reach);
+        let unit = reaches.fold(0.0, f64::max);
+        let bands = touching.iter().map(|arc| band(arc, unit)).collect();
         let surface = Convex::new(Bands(bands));
         let within = sums(touching, centre)[0].abs() - content.abs();
         let concave = within > 1e-12 * content.abs();
