@@ -313,6 +313,7 @@ impl<'a> Batch<'a> {
             let body = kind.body;
             let start = velocities.len();
             let each = kind.particles / gas.batches;
+            ends.push(start + each);
             if let Some(given) = gas.given {
                 let own = &given[number * count + start..][..each];
                 for state in own {
@@ -320,7 +321,6 @@ impl<'a> Batch<'a> {
                     velocities.push(free.velocity);
                     rotations.push(ParticleRotation::new(&free, 0.0));
                 }
-                ends.push(velocities.len());
                 continue;
             }
             let index = ((number * gas.kinds.len() + order) as u64) << 40;
@@ -340,7 +340,6 @@ impl<'a> Batch<'a> {
                 });
             }
             settle(&mut velocities[start..], &mut rotations[start..], kind);
-            ends.push(velocities.len());
         }
         let mut waiting = Vec::new();
         waiting.resize_with(gas.kinds.len() * gas.kinds.len(), Waiting::default);

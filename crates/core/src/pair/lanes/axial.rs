@@ -278,7 +278,8 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
         let between = parts.between(apart, axes);
         // The last normal, or that between the centres.
         let none = all.normal.dot(all.normal).eq(0.0);
-        let last = (all.normal).or(none, between * (1.0 / between.dot(between).sqrt()));
+        let along = between * (1.0 / between.dot(between).sqrt());
+        let last = all.normal.or(none, along);
         all.normal = parts.normal(last, between, axes, active, true);
         let zero = Pack::splat(all.time.simd(), 0.0);
         let leaves = all.time.eq(0.0) & zero.lt(all.left);
