@@ -1,6 +1,6 @@
 //! Boxes.
 
-use super::rigid::{CENTRE, TENSOR};
+use super::rigid::homogeneous;
 use super::{BodyKind, Form, check_length};
 use crate::describe::{Arguments, Kind, Parameter};
 use crate::math::Vector;
@@ -9,13 +9,10 @@ use crate::math::Vector;
 pub(super) const BOX: BodyKind = BodyKind::Rigid(Kind {
     name: "Box",
     text: "cuboid",
-    parameters: &[
+    parameters: homogeneous![
         Parameter::length("a", "edge along x of the body", 8e-3).linked("edge_x"),
         Parameter::length("b", "edge along y of the body", 6e-3).linked("edge_y"),
         Parameter::length("c", "edge along z of the body", 4e-3).linked("edge_z"),
-        Parameter::density("density"),
-        TENSOR,
-        CENTRE,
     ],
     make: |given| {
         let edges = [0, 1, 2].map(|i| given.number(i));

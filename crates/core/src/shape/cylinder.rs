@@ -1,6 +1,6 @@
 //! Cylinders.
 
-use super::rigid::{CENTRE, TENSOR};
+use super::rigid::homogeneous;
 use super::{BodyKind, Form, check_length};
 use crate::describe::{Arguments, Kind, Parameter};
 
@@ -8,12 +8,9 @@ use crate::describe::{Arguments, Kind, Parameter};
 pub(super) const CYLINDER: BodyKind = BodyKind::Rigid(Kind {
     name: "Cylinder",
     text: "cylinder: a coin, a tablet, a rod",
-    parameters: &[
+    parameters: homogeneous![
         Parameter::length("radius", "radius", 3e-3),
         Parameter::length("height", "height of the cylinder", 1.8e-3),
-        Parameter::density("density"),
-        TENSOR,
-        CENTRE,
     ],
     make: |given| {
         let [radius, height] = [0, 1].map(|i| given.number(i));

@@ -1,7 +1,7 @@
 //! Dice: the five Platonic solids.
 
 use super::cuboid::corners;
-use super::rigid::{CENTRE, TENSOR};
+use super::rigid::homogeneous;
 use super::{BodyKind, Form, check_length};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Kind, Parameter};
@@ -11,7 +11,7 @@ use crate::math::{UNITS, Vector};
 pub(super) const DIE: BodyKind = BodyKind::Rigid(Kind {
     name: "Die",
     text: "die with equal faces",
-    parameters: &[
+    parameters: homogeneous![
         Parameter::new(
             "faces",
             "number of faces",
@@ -20,9 +20,6 @@ pub(super) const DIE: BodyKind = BodyKind::Rigid(Kind {
             Argument::Whole(6),
         ),
         Parameter::length("edge", "length of an edge", 6e-3),
-        Parameter::density("density"),
-        TENSOR,
-        CENTRE,
     ],
     make: solid,
 });

@@ -1,6 +1,6 @@
 //! Eggs: two spherical caps, joined by an arc that is tangent to both.
 
-use super::rigid::{CENTRE, Rigid, TENSOR};
+use super::rigid::{Rigid, homogeneous};
 use super::surface::{Band, Place};
 use super::{BodyKind, Form};
 use crate::Error;
@@ -11,14 +11,11 @@ use crate::math::flat::norm;
 pub(super) const EGG: BodyKind = BodyKind::Rigid(Kind {
     name: "Egg",
     text: "egg of two caps, joined by an arc",
-    parameters: &[
+    parameters: homogeneous![
         Parameter::length("length", "length", 6e-3),
         Parameter::length("width", "width", 4.5e-3).up_to(1.0),
         Parameter::length("blunt_end", "radius of the blunt end", 2.1e-3).up_to(0.5),
         Parameter::length("tip", "radius of the tip", 1.5e-3).up_to(0.5),
-        Parameter::density("density"),
-        TENSOR,
-        CENTRE,
     ],
     make: |given| {
         let [length, width, blunt, tip] = [0, 1, 2, 3].map(|i| given.number(i));

@@ -1,7 +1,7 @@
 //! Ellipsoids.
 
 use super::pieces::Extent;
-use super::rigid::{CENTRE, Inertia, Rigid, TENSOR};
+use super::rigid::{Inertia, Rigid, homogeneous};
 use super::surface::{Convex, EllipsoidSurface};
 use super::{BodyKind, Form, check_density};
 use crate::Error;
@@ -30,7 +30,7 @@ const ALLOWED: &str = "three finite numbers > 0 in m, the largest at most 1000 t
 pub(super) const ELLIPSOID: BodyKind = BodyKind::Rigid(Kind {
     name: "Ellipsoid",
     text: "ellipsoid with three semi-axes",
-    parameters: &[SEMI_AXES, Parameter::density("density"), TENSOR, CENTRE],
+    parameters: homogeneous![SEMI_AXES],
     make: |given| Rigid::ellipsoid(given.several(0), given.number(1)).map(Form::from),
 });
 

@@ -2,7 +2,7 @@
 
 use super::pieces::Extent;
 use super::polyhedron::{check, faces, solid, vertex};
-use super::rigid::{CENTRE, Rigid, TENSOR, vectors};
+use super::rigid::{Rigid, homogeneous, vectors};
 use super::{BodyKind, Form};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 pub(super) const MESH: BodyKind = BodyKind::Rigid(Kind {
     name: "Mesh",
     text: "solid within triangles, whose hull touches",
-    parameters: &[
+    parameters: homogeneous![
         Parameter::new(
             "vertices",
             "corners of the triangles",
@@ -30,9 +30,6 @@ pub(super) const MESH: BodyKind = BodyKind::Rigid(Kind {
             Allowed::Rows(&["a", "b", "c"], 1, Interval::NOT_NEGATIVE),
             Argument::Numbers(&[0.0, 2.0, 1.0, 0.0, 1.0, 3.0, 0.0, 3.0, 2.0, 1.0, 2.0, 3.0]),
         ),
-        Parameter::density("density"),
-        TENSOR,
-        CENTRE,
     ],
     make: |given| {
         let rows = given.numbers(1).as_chunks::<3>().0.iter();

@@ -1,7 +1,7 @@
 //! Convex polyhedra.
 
 use super::pieces::Extent;
-use super::rigid::{CENTRE, Inertia, Rigid, RigidBall, TENSOR, VolumeMoments, vectors};
+use super::rigid::{Inertia, Rigid, RigidBall, VolumeMoments, homogeneous, vectors};
 use super::{BodyKind, Form, check_density, hull};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
@@ -12,18 +12,13 @@ use std::ops::Add;
 pub(super) const CONVEX_POLYHEDRON: BodyKind = BodyKind::Rigid(Kind {
     name: "ConvexPolyhedron",
     text: "convex hull of points",
-    parameters: &[
-        Parameter::new(
-            "points",
-            "points, of which the convex hull is the body",
-            Some("m"),
-            Allowed::Rows(&["x", "y", "z"], 4, Interval::ANY),
-            Argument::Numbers(STONE),
-        ),
-        Parameter::density("density"),
-        TENSOR,
-        CENTRE,
-    ],
+    parameters: homogeneous![Parameter::new(
+        "points",
+        "points, of which the convex hull is the body",
+        Some("m"),
+        Allowed::Rows(&["x", "y", "z"], 4, Interval::ANY),
+        Argument::Numbers(STONE),
+    ),],
     make: |given| {
         let points = vectors(given.numbers(0));
         let faces = faces("points", &points)?;

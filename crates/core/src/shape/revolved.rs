@@ -1,7 +1,7 @@
 //! Solids of revolution with any profile.
 
 use super::pieces::Extent;
-use super::rigid::{CENTRE, Inertia, Rigid, TENSOR};
+use super::rigid::{Inertia, Rigid, homogeneous};
 use super::surface::{Band, Bands, Convex, Place, RigidSurface};
 use super::{BodyKind, Form, check_density};
 use crate::Error;
@@ -14,18 +14,13 @@ use std::f64::consts::PI;
 pub(super) const REVOLUTION: BodyKind = BodyKind::Rigid(Kind {
     name: "Revolution",
     text: "solid of revolution with any profile",
-    parameters: &[
-        Parameter::new(
-            "profile",
-            "points of the outline from one end to the other, r the distance from the axis",
-            Some("m"),
-            Allowed::Rows(&["z", "r"], 2, Interval::NOT_NEGATIVE),
-            Argument::Numbers(&[0.0, 3e-3, 6e-3, 0.0]),
-        ),
-        Parameter::density("density"),
-        TENSOR,
-        CENTRE,
-    ],
+    parameters: homogeneous![Parameter::new(
+        "profile",
+        "points of the outline from one end to the other, r the distance from the axis",
+        Some("m"),
+        Allowed::Rows(&["z", "r"], 2, Interval::NOT_NEGATIVE),
+        Argument::Numbers(&[0.0, 3e-3, 6e-3, 0.0]),
+    ),],
     make: |given| {
         let profile = given.numbers(0).as_chunks().0;
         check_outline(profile)?;

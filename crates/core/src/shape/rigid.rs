@@ -102,7 +102,7 @@ impl VolumeMoments {
     }
 }
 
-/// The parameters with which those of a homogeneous body end.
+/// The tensor of inertia of a body that need not be homogeneous, and its centre of mass.
 pub(super) const TENSOR: Parameter = Parameter::new(
     "inertia",
     "tensor of inertia about the centre of mass, instead of that of homogeneous matter",
@@ -122,6 +122,15 @@ pub(super) const CENTRE: Parameter = Parameter::new(
     Argument::Numbers(&[0.0; 3]),
 )
 .optional();
+
+/// The parameters of a homogeneous body: its own, and then density, [`TENSOR`] and [`CENTRE`].
+macro_rules! homogeneous {
+    ($($own:expr),+ $(,)?) => {{
+        use $crate::shape::rigid::{CENTRE, TENSOR};
+        &[$($own,)+ $crate::describe::Parameter::density("density"), TENSOR, CENTRE]
+    }};
+}
+pub(super) use homogeneous;
 
 /// Triples of numbers as vectors.
 pub(super) fn vectors(numbers: &[f64]) -> Vec<Vector> {

@@ -1,6 +1,6 @@
 //! Rings.
 
-use super::rigid::{CENTRE, TENSOR};
+use super::rigid::homogeneous;
 use super::{BodyKind, Form, check_length};
 use crate::Error;
 use crate::describe::{Arguments, Kind, Parameter};
@@ -9,13 +9,10 @@ use crate::describe::{Arguments, Kind, Parameter};
 pub(super) const RING: BodyKind = BodyKind::Rigid(Kind {
     name: "Ring",
     text: "ring, washer or tube",
-    parameters: &[
+    parameters: homogeneous![
         Parameter::length("outer", "outer radius", 4e-3),
         Parameter::length("inner", "inner radius", 2.4e-3).up_to(0.99),
         Parameter::length("height", "height of the ring", 2e-3).linked("ring_height"),
-        Parameter::density("density"),
-        TENSOR,
-        CENTRE,
     ],
     make: |given| {
         let [outer, inner, height] = [0, 1, 2].map(|i| given.number(i));

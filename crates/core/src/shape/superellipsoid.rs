@@ -5,7 +5,7 @@
 
 use super::ellipsoid::SEMI_AXES;
 use super::pieces::Extent;
-use super::rigid::{CENTRE, Inertia, Rigid, TENSOR};
+use super::rigid::{Inertia, Rigid, homogeneous};
 use super::surface::{Convex, Superellipsoid, exp, power};
 use super::{BodyKind, Form, check_density};
 use crate::Error;
@@ -21,7 +21,7 @@ const EXPONENTS: [f64; 2] = [1.1, 100.0];
 pub(super) const SUPERELLIPSOID: BodyKind = BodyKind::Rigid(Kind {
     name: "Superellipsoid",
     text: "superellipsoid, the superquadric of DEM codes",
-    parameters: &[
+    parameters: homogeneous![
         SEMI_AXES,
         Parameter::new(
             "exponents",
@@ -36,9 +36,6 @@ pub(super) const SUPERELLIPSOID: BodyKind = BodyKind::Rigid(Kind {
             ),
             Argument::Numbers(&[4.0, 3.0]),
         ),
-        Parameter::density("density"),
-        TENSOR,
-        CENTRE,
     ],
     make: |given| {
         Rigid::superellipsoid(given.several(0), given.several(1), given.number(2)).map(Form::from)

@@ -1,6 +1,6 @@
 //! Truncated cones.
 
-use super::rigid::{CENTRE, TENSOR};
+use super::rigid::homogeneous;
 use super::{BodyKind, Form, check_distance, check_length};
 use crate::describe::{Arguments, Kind, Parameter};
 
@@ -8,13 +8,10 @@ use crate::describe::{Arguments, Kind, Parameter};
 pub(super) const TRUNCATED_CONE: BodyKind = BodyKind::Rigid(Kind {
     name: "TruncatedCone",
     text: "truncated cone: a cup, a bullet, a cone",
-    parameters: &[
+    parameters: homogeneous![
         Parameter::length("base", "radius of the face at z = 0", 3e-3),
         Parameter::distance("top", "radius of the other face, 0 of a cone", 1.5e-3),
         Parameter::length("height", "distance of the faces", 5e-3).linked("cone_height"),
-        Parameter::density("density"),
-        TENSOR,
-        CENTRE,
     ],
     make: |given| {
         let [base, top, height] = [0, 1, 2].map(|i| given.number(i));
