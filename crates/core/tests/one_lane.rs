@@ -160,7 +160,7 @@ pub fn trajectory(
 }
 
 /// The state in the only lane.
-fn state<S: Simd, const K: usize>(lanes: &SpatialState<S, K>) -> State {
+fn state<S: Simd>(lanes: &SpatialState<S>) -> State {
     State {
         height: lanes.height.as_slice()[0],
         velocity: lanes.motion.velocity.lane(0),

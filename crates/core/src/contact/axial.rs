@@ -12,7 +12,7 @@ use super::certify::{INVISIBLE, zero as zero_of};
 use super::pair::{NARROW, ROUNDS};
 use crate::math::{UNITS, Vectors};
 use crate::shape::{Piece, PieceKind, Round};
-use crate::simd::{Mask, Pack};
+use crate::simd::{Lanewise, Mask, Pack};
 use pulp::Simd;
 
 /// The gap of two balls in each lane.

@@ -6,7 +6,7 @@ use crate::math::{Vector, Vectors};
 use crate::pair::{Follower, approach};
 use crate::random::of_candidates;
 use crate::simd::elementary::sincos_in_lanes;
-use crate::simd::{LANES, Pack};
+use crate::simd::{LANES, Lanewise, Pack};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 
@@ -66,7 +66,7 @@ impl WithSimd for Candidates<'_, '_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Decided {
         let zero = Pack::splat(simd, 0.0);
-        let mut both = [Vectors::splat(simd, Vector::default()); 2];
+        let mut both = [Vectors::none(simd); 2];
         let (mut chances, mut squares, mut turns) = (zero, zero, zero);
         let (mut numbers, mut draws) = ([0; LANES], [(0.0, 0.0); TOGETHER]);
         let mut counters = [0; TOGETHER];

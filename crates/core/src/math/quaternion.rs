@@ -1,7 +1,7 @@
 //! Rotations as unit quaternions.
 
 use super::{Part, Vector, Vectors};
-use crate::simd::{Mask, Pack};
+use crate::simd::{Pack, lanewise};
 use pulp::{Scalar, Simd};
 use std::ops::{Div, Mul, Sub};
 
@@ -152,18 +152,13 @@ impl Quaternion {
     }
 }
 
+lanewise! { Quaternions<S> { w, x, y, z } }
+
 impl<S: Simd> Quaternions<S> {
     /// The same one in every lane.
     #[inline(always)]
     pub(crate) fn splat(simd: S, of: Quaternion) -> Self {
         Self::of(Pack::splat(simd, of.w), Vectors::splat(simd, of.vector()))
-    }
-
-    /// The same, but those of `other` in the lanes of the mask.
-    #[inline(always)]
-    pub(crate) fn or(self, mask: Mask<S, 1>, other: Self) -> Self {
-        let w = mask.select(other.w, self.w);
-        Self::of(w, self.vector().or(mask, other.vector()))
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 //! Products are summed with fused multiply-adds in a fixed order, so that results are reproducible, and components that are
 //! exactly 0, as in a motion in the x–z plane, remain exactly 0.
 
-use crate::simd::{Mask, Operand, Pack};
+use crate::simd::{Operand, Pack, lanewise};
 use pulp::{Scalar, Simd};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -189,6 +189,8 @@ impl Vector {
     }
 }
 
+lanewise! { Vectors<S, 1> { x, y, z } }
+
 impl<S: Simd, const K: usize> Vectors<S, K> {
     /// The same vector in every lane.
     #[inline(always)]
@@ -211,16 +213,6 @@ impl<S: Simd, const K: usize> Vectors<S, K> {
             z: Pack::splat(simd, 0.0),
         });
         across / across.norm()
-    }
-
-    /// The same vectors, but those of `other` in the lanes of the mask.
-    #[inline(always)]
-    pub(crate) fn or(self, mask: Mask<S, K>, other: Self) -> Self {
-        Self {
-            x: mask.select(other.x, self.x),
-            y: mask.select(other.y, self.y),
-            z: mask.select(other.z, self.z),
-        }
     }
 
     /// The vector in a lane.

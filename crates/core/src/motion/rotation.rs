@@ -10,7 +10,7 @@ use super::top::energy_error;
 use crate::math::{Quaternion, Quaternions, UNITS, Vector, Vectors, sum};
 use crate::shape::{Symmetry, Top};
 use crate::simd::elementary::sincos_in_lanes;
-use crate::simd::{Level, Mask, Pack, one};
+use crate::simd::{Lanewise, Level, Mask, Pack, one};
 use pulp::{Scalar, Simd, WithSimd};
 
 /// The rotation of a body in flight; where it takes series, fastest forward in time.
@@ -109,7 +109,7 @@ impl WithSimd for Later<'_> {
 impl<S: Simd> Rotations<S> {
     /// Those of bodies that do not turn.
     pub fn none(simd: S) -> Self {
-        let none = Vectors::splat(simd, Vector::default());
+        let none = Vectors::none(simd);
         Self {
             attitude: Quaternions::splat(simd, Quaternion::IDENTITY),
             spin: none,

@@ -6,9 +6,11 @@
 pub mod elementary;
 #[cfg(any(target_arch = "wasm32", test))]
 mod fused;
+mod lanewise;
 mod level;
 mod pack;
 
+pub(crate) use lanewise::{Lanewise, lanewise};
 pub use level::Level;
 pub(crate) use pack::{LANES, Mask, Operand, Pack};
 

@@ -4,7 +4,7 @@ use crate::contact::certify::{SHORTEST, TOUCHING, closing_speed, first_zero};
 use crate::motion::{Attitude, Flight, SymmetricState};
 use crate::shape::{AxisMotion, Hull, HullPart};
 use crate::simd::elementary::RANGE;
-use crate::simd::{Mask, Pack};
+use crate::simd::{Lanewise, Mask, Pack, lanewise};
 use pulp::Simd;
 
 /// The contact from which the flight starts.
@@ -53,30 +53,17 @@ pub(crate) struct Gap<S: Simd> {
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct GapEvaluation<S: Simd> {
-    pub attitude: Attitude<S, 1>,
+    pub attitude: Attitude<S>,
     /// The gap that may close first.
     pub gap: Gap<S>,
     /// The lanes that do not land before the angle turned through exceeds [`RANGE`].
     pub never: Mask<S, 1>,
 }
 
-impl<S: Simd> GapEvaluation<S> {
-    /// Before the first evaluation.
-    #[inline(always)]
-    pub fn none(part: HullPart<S>) -> Self {
-        let simd = part.own.simd();
-        let zero = Pack::splat(simd, 0.0);
-        Self {
-            attitude: Attitude::none(simd),
-            gap: Gap {
-                part,
-                width: zero,
-                rate: zero,
-                closing: zero,
-            },
-            never: Mask::splat(simd, false),
-        }
-    }
+lanewise! {
+    LastContact<S> { sphere, speed }
+    Gap<S> { part, width, rate, closing }
+    GapEvaluation<S> { attitude, gap, never }
 }
 
 /// A flight and the bounds on its gap that the search uses.
@@ -95,7 +82,7 @@ pub(crate) struct Search<S: Simd, F> {
     down: Pack<S, 1>,
 }
 
-impl<S: Simd, F: Flight<S, 1>> Search<S, F> {
+impl<S: Simd, F: Flight<S>> Search<S, F> {
     /// The search along a flight that starts from this contact.
     #[inline(always)]
     pub fn new(flight: F, last_contact: LastContact<S>, hull: &impl Hull) -> Self {
@@ -116,7 +103,7 @@ impl<S: Simd, F: Flight<S, 1>> Search<S, F> {
     #[inline(always)]
     pub fn continue_with(
         &mut self,
-        motion: <F::State as SymmetricState<S, 1>>::Motion,
+        motion: <F::State as SymmetricState<S>>::Motion,
         slope: f64,
         hull: &impl Hull,
     ) {
@@ -146,21 +133,15 @@ impl<S: Simd, F: Flight<S, 1>> Search<S, F> {
     #[inline(always)]
     pub fn released(flight: F, hull: &impl Hull) -> Self {
         let simd = flight.rate().simd();
-        let zero = Pack::splat(simd, 0.0);
-        let free = LastContact {
-            sphere: zero,
-            speed: zero,
-        };
-        let mut search = Self::new(flight, free, hull);
+        let mut search = Self::new(flight, LastContact::none(simd), hull);
         let instant = search.beginning();
         for first in [false, true] {
             let gap = search.gap(&instant, hull.part(Mask::splat(simd, first)), hull);
             let width = hull.gap(&gap.part, instant.axis_motion.cos_tilt, instant.height);
-            let on = width.le(0.0) & zero.le(gap.rate);
-            let last_contact = &mut search.last_contact;
-            let sphere = if first { 1.0 } else { -1.0 };
-            last_contact.sphere = on.select(sphere, last_contact.sphere);
-            last_contact.speed = on.select(gap.rate, last_contact.speed);
+            let on = width.le(0.0) & (-gap.rate).le(0.0);
+            let sphere = Pack::splat(simd, if first { 1.0 } else { -1.0 });
+            let speed = gap.rate;
+            search.last_contact = search.last_contact.or(on, LastContact { sphere, speed });
         }
         search
     }
@@ -274,7 +255,7 @@ impl<S: Simd, F: Flight<S, 1>> Search<S, F> {
 
     /// Height, axis and their derivatives at `time`, with this attitude.
     #[inline(always)]
-    pub(super) fn instant(&self, time: Pack<S, 1>, attitude: Attitude<S, 1>) -> Instant<S> {
+    pub(super) fn instant(&self, time: Pack<S, 1>, attitude: Attitude<S>) -> Instant<S> {
         Instant {
             time,
             height: self.flight.height_at(time),
@@ -300,15 +281,7 @@ impl<S: Simd, F: Flight<S, 1>> Search<S, F> {
         let other = self.exact(instant, other, hull);
         let leaving = gap.width.le(TOUCHING) & !gap.rate.lt(0.0);
         let swap = leaving & self.certified(&other).lt(self.certified(&gap));
-        Gap {
-            part: HullPart {
-                one: gap.part.one ^ swap,
-                own: swap.select(other.part.own, gap.part.own),
-            },
-            width: swap.select(other.width, gap.width),
-            rate: swap.select(other.rate, gap.rate),
-            closing: swap.select(other.closing, gap.closing),
-        }
+        gap.or(swap, other)
     }
 
     #[inline(always)]

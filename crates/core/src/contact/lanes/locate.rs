@@ -5,7 +5,7 @@ use super::{FAR, NEAR, SMALL};
 use crate::contact::certify::{INVISIBLE, LAST, before, mean_rate_before};
 use crate::motion::{Attitude, Flight};
 use crate::shape::Hull;
-use crate::simd::{Mask, Pack};
+use crate::simd::{Lanewise, Mask, Pack, lanewise};
 use pulp::Simd;
 
 /// The two next steps of the search.
@@ -23,7 +23,7 @@ pub(crate) struct Steps<S: Simd> {
 #[repr(align(64))]
 pub(crate) struct Prediction<S: Simd> {
     time: Pack<S, 1>,
-    attitude: Attitude<S, 1>,
+    attitude: Attitude<S>,
     width: Pack<S, 1>,
     /// f′ and f″.
     rate: Pack<S, 1>,
@@ -36,22 +36,18 @@ pub(crate) struct Prediction<S: Simd> {
 pub(crate) struct LocatedContact<S: Simd> {
     /// Time and attitude of the contact.
     pub time: Pack<S, 1>,
-    pub attitude: Attitude<S, 1>,
+    pub attitude: Attitude<S>,
     /// The lanes in which the contact is located, or that never land.
     pub done: Mask<S, 1>,
 }
 
-impl<S: Simd> Steps<S> {
-    /// Before the first evaluation.
-    #[inline(always)]
-    pub fn none(simd: S) -> Self {
-        let zero = Pack::splat(simd, 0.0);
-        Self {
-            certified: zero,
-            expanded: zero,
-        }
-    }
+lanewise! {
+    Steps<S> { certified, expanded }
+    Prediction<S> { time, attitude, width, rate, curvature }
+    LocatedContact<S> { time, attitude, done }
+}
 
+impl<S: Simd> Steps<S> {
     /// The step to the contact that was found from `time`, to predict it again from there; that of the lanes that are done stays as it
     /// is, so that they repeat the same result.
     #[inline(always)]
@@ -63,34 +59,7 @@ impl<S: Simd> Steps<S> {
     }
 }
 
-impl<S: Simd> Prediction<S> {
-    /// Before the first evaluation.
-    #[inline(always)]
-    pub fn none(simd: S) -> Self {
-        let zero = Pack::splat(simd, 0.0);
-        Self {
-            time: zero,
-            attitude: Attitude::none(simd),
-            width: zero,
-            rate: zero,
-            curvature: zero,
-        }
-    }
-}
-
-impl<S: Simd> LocatedContact<S> {
-    /// Before the first evaluation.
-    #[inline(always)]
-    pub fn none(simd: S) -> Self {
-        Self {
-            time: Pack::splat(simd, 0.0),
-            attitude: Attitude::none(simd),
-            done: Mask::splat(simd, false),
-        }
-    }
-}
-
-impl<S: Simd, F: Flight<S, 1>> Search<S, F> {
+impl<S: Simd, F: Flight<S>> Search<S, F> {
     /// The next steps, from the gap as evaluated.
     #[inline(always)]
     pub fn steps(&self, evaluation: &GapEvaluation<S>, hull: &impl Hull) -> Steps<S> {
@@ -187,12 +156,12 @@ impl<S: Simd, F: Flight<S, 1>> Search<S, F> {
         if !last.any() {
             return;
         }
-        let there = evaluation.attitude.turned(self.flight.rate() * step);
-        let attitude = &mut located.attitude;
-        located.time = last.select(end, located.time);
-        attitude.sine = last.select(there.sine, attitude.sine);
-        attitude.cosine = last.select(there.cosine, attitude.cosine);
-        located.done = located.done | last;
+        let there = LocatedContact {
+            time: end,
+            attitude: evaluation.attitude.turned(self.flight.rate() * step),
+            done: last,
+        };
+        *located = located.or(last, there);
     }
 
     /// The time up to which a pass that evaluated the gap at `time` rules out a contact.

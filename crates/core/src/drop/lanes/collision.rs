@@ -7,13 +7,13 @@ use crate::motion::{
     Flight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion, SpatialState, SymmetricState,
 };
 use crate::shape::{Body, Hull, HullPart};
-use crate::simd::{Mask, Pack};
+use crate::simd::{Lanewise, Pack, lanewise};
 use pulp::Simd;
 
 /// Planar or spatial motion.
 pub(crate) trait Dimension: Copy {
     /// The flight of as many particles as there are lanes.
-    type Flight<S: Simd>: Flight<S, 1, State: Collide<S>>;
+    type Flight<S: Simd>: Flight<S, State: Collide<S>>;
     /// True if a contact may slip across the plane of the axis.
     const SPACE: bool;
 }
@@ -27,12 +27,12 @@ pub(crate) struct Planar;
 pub(crate) struct Spatial;
 
 impl Dimension for Planar {
-    type Flight<S: Simd> = PlanarState<S, 1>;
+    type Flight<S: Simd> = PlanarState<S>;
     const SPACE: bool = false;
 }
 
 impl Dimension for Spatial {
-    type Flight<S: Simd> = SpatialFlight<S, 1>;
+    type Flight<S: Simd> = SpatialFlight<S>;
     const SPACE: bool = true;
 }
 
@@ -43,26 +43,9 @@ pub(crate) struct ContactPoint<S: Simd> {
     pub radius: Pack<S, 1>,
 }
 
+lanewise! { ContactPoint<S> { lever, radius } }
+
 impl<S: Simd> ContactPoint<S> {
-    /// Before the first contact.
-    #[inline(always)]
-    pub fn none(simd: S) -> Self {
-        let zero = Pack::splat(simd, 0.0);
-        Self {
-            lever: zero,
-            radius: zero,
-        }
-    }
-
-    /// The same, but of no size in the lanes of the mask, which have no contact.
-    #[inline(always)]
-    pub fn but_not(self, mask: Mask<S, 1>) -> Self {
-        Self {
-            lever: mask.select(0.0, self.lever),
-            radius: mask.select(0.0, self.radius),
-        }
-    }
-
     /// That of a part of a hull at this e_z.
     #[inline(always)]
     pub fn of(hull: &impl Hull, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Self {
@@ -95,7 +78,7 @@ impl<S: Simd> Collisions<S> {
 }
 
 /// A state to which an impact can be applied.
-pub(crate) trait Collide<S: Simd>: SymmetricState<S, 1> {
+pub(crate) trait Collide<S: Simd>: SymmetricState<S> {
     /// The contact of the part of the hull that touches.
     fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>>;
 
@@ -114,13 +97,13 @@ pub(crate) trait Collide<S: Simd>: SymmetricState<S, 1> {
 /// **r**_c (6) in the plane of the axis, along x and z.
 #[inline(always)]
 fn planar_arm<S: Simd>(
-    state: &PlanarState<S, 1>,
+    state: &PlanarState<S>,
     ContactPoint { lever, radius }: ContactPoint<S>,
 ) -> [Pack<S, 1>; 2] {
     [state.sine * lever, state.cosine.mul_add(lever, -radius)]
 }
 
-impl<S: Simd> Collide<S> for PlanarState<S, 1> {
+impl<S: Simd> Collide<S> for PlanarState<S> {
     #[inline(always)]
     fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>> {
         let PlanarMotion { vx, vz, spin } = self.motion;
@@ -151,7 +134,7 @@ impl<S: Simd> Collide<S> for PlanarState<S, 1> {
         body: &Body,
         point: ContactPoint<S>,
         response: &Response<Pack<S, 1>>,
-    ) -> PlanarMotion<S, 1> {
+    ) -> PlanarMotion<S> {
         let PlanarMotion { vx, vz, spin } = self.motion;
         let [arm_x, arm_z] = planar_arm(self, point);
         let impulse = &response.impulse;
@@ -180,7 +163,7 @@ struct ContactFrame<S: Simd> {
 
 impl<S: Simd> ContactFrame<S> {
     #[inline(always)]
-    fn new(state: &SpatialState<S, 1>, ContactPoint { lever, radius }: ContactPoint<S>) -> Self {
+    fn new(state: &SpatialState<S>, ContactPoint { lever, radius }: ContactPoint<S>) -> Self {
         let axis = state.axis;
         let sine = state.sine();
         let upright = sine.le(UPRIGHT);
@@ -198,7 +181,7 @@ impl<S: Simd> ContactFrame<S> {
     }
 }
 
-impl<S: Simd> Collide<S> for SpatialState<S, 1> {
+impl<S: Simd> Collide<S> for SpatialState<S> {
     #[inline(always)]
     fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>> {
         let velocity = self.motion.velocity;
@@ -246,7 +229,7 @@ impl<S: Simd> Collide<S> for SpatialState<S, 1> {
         body: &Body,
         point: ContactPoint<S>,
         response: &Response<Pack<S, 1>>,
-    ) -> SpatialMotion<S, 1> {
+    ) -> SpatialMotion<S> {
         let SpatialMotion {
             velocity,
             precession,

@@ -14,16 +14,16 @@ use crate::drop::stop::{Limits, StopReason};
 use crate::law::{Contact, CustomLaw, Response};
 use crate::motion::{Flight, SymmetricState};
 use crate::shape::{Body, Hull};
-use crate::simd::{Mask, Pack};
+use crate::simd::{Lanewise, Mask, Pack};
 use pulp::Simd;
 use std::ops::Range;
 
 /// The flight of a group with planar or spatial motion T.
 type FlightOf<S, T> = <T as Dimension>::Flight<S>;
 /// The state of a group.
-pub(crate) type StateOf<S, T> = <FlightOf<S, T> as Flight<S, 1>>::State;
+pub(crate) type StateOf<S, T> = <FlightOf<S, T> as Flight<S>>::State;
 /// Velocity and angular momentum of a group, which an impact changes.
-type MotionOf<S, T> = <StateOf<S, T> as SymmetricState<S, 1>>::Motion;
+type MotionOf<S, T> = <StateOf<S, T> as SymmetricState<S>>::Motion;
 
 /// The flights of as many particles as a vector has lanes, and the search for their contacts: a lane whose contact is not located yet
 /// sits out the impacts of the others. Aligned to a cache line, so that no vector straddles two lines.
@@ -58,22 +58,18 @@ impl<S: Simd, T: Dimension> Group<S, T> {
     /// A group without particles; its lanes hold a body at rest.
     #[inline(always)]
     pub fn empty(simd: S, hull: &impl Hull) -> Self {
-        let zero = Pack::splat(simd, 0.0);
+        let (zero, none) = (Pack::none(simd), Mask::none(simd));
         let state = StateOf::<S, T>::resting(simd, 1.0);
-        let last_contact = LastContact {
-            sphere: zero,
-            speed: zero,
-        };
-        let part = hull.part(Mask::splat(simd, false));
+        let flight = FlightOf::<S, T>::new(state, 0.0);
         Self {
-            search: Search::new(FlightOf::<S, T>::new(state, 0.0), last_contact, hull),
-            evaluation: GapEvaluation::none(part),
+            search: Search::new(flight, LastContact::none(simd), hull),
+            evaluation: GapEvaluation::none(simd),
             steps: Steps::none(simd),
             prediction: Prediction::none(simd),
             located: LocatedContact::none(simd),
             certain: zero,
-            clear: Mask::splat(simd, true),
-            waiting: Mask::splat(simd, false),
+            clear: !none,
+            waiting: none,
             passes: zero,
             is_behind: false,
             time: zero,
@@ -99,9 +95,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         });
         self.waiting = self.waiting & !fresh;
         let released = Search::released(FlightOf::<S, T>::new(state, slope), hull).last_contact;
-        let last_contact = &mut self.search.last_contact;
-        last_contact.sphere = fresh.select(released.sphere, last_contact.sphere);
-        last_contact.speed = fresh.select(released.speed, last_contact.speed);
+        self.search.last_contact = self.search.last_contact.or(fresh, released);
         self.search.flight.end(state, state.height());
         self.after = state.motion();
     }
@@ -256,12 +250,12 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         if self.is_behind {
             let before = self.search.flight.start();
             let (state, height) = (
-                state.or(self.waiting, before),
+                state.or(self.waiting, *before),
                 self.waiting.select(before.height(), height),
             );
             self.search.flight.end(state, height);
             last_contact.sphere = self.waiting.select(last_contact.sphere, sphere);
-            point.but_not(self.waiting)
+            point.or(self.waiting, ContactPoint::none(self.time.simd()))
         } else {
             self.search.flight.end(state, height);
             last_contact.sphere = sphere;
@@ -318,7 +312,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         let last_contact = &mut self.search.last_contact;
         self.approach = contact.approach_speed();
         if self.is_behind {
-            self.after = before.with_motion(after).or(self.waiting, &before).motion();
+            self.after = before.with_motion(after).or(self.waiting, before).motion();
             last_contact.speed = self.waiting.select(last_contact.speed, separation);
         } else {
             self.after = after;

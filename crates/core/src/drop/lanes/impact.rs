@@ -53,7 +53,7 @@ pub(crate) trait Pose<S: Simd> {
     fn spin_after(&self) -> Vectors<S, 1>;
     /// The states before and after the impact of a body of revolution.
     #[cfg(feature = "one-lane")]
-    fn symmetric(&self) -> Option<[&SpatialState<S, 1>; 2]> {
+    fn symmetric(&self) -> Option<[&SpatialState<S>; 2]> {
         None
     }
 }
@@ -62,8 +62,8 @@ pub(crate) trait Pose<S: Simd> {
 pub(crate) struct SymmetricPose<'a, S: Simd> {
     pub body: &'a Body,
     pub sine: Pack<S, 1>,
-    pub before: SpatialState<S, 1>,
-    pub after: SpatialState<S, 1>,
+    pub before: SpatialState<S>,
+    pub after: SpatialState<S>,
 }
 
 impl<S: Simd> Pose<S> for SymmetricPose<'_, S> {
@@ -103,7 +103,7 @@ impl<S: Simd> Pose<S> for SymmetricPose<'_, S> {
     }
 
     #[cfg(feature = "one-lane")]
-    fn symmetric(&self) -> Option<[&SpatialState<S, 1>; 2]> {
+    fn symmetric(&self) -> Option<[&SpatialState<S>; 2]> {
         Some([&self.before, &self.after])
     }
 }

@@ -3,41 +3,35 @@
 use super::{Attitude, Flight, SpatialMotion, SpatialState, State, SymmetricState};
 use crate::math::Vectors;
 use crate::shape::{AxisMotion, Body};
-use crate::simd::{Mask, Pack};
+use crate::simd::{Lanewise, Pack};
 use pulp::Simd;
 
 /// Position and motion, and the flight from there.
 #[derive(Clone, Copy)]
-pub(crate) struct PlanarState<S: Simd, const K: usize> {
-    pub height: Pack<S, K>,
-    pub sine: Pack<S, K>,
-    pub cosine: Pack<S, K>,
-    pub motion: PlanarMotion<S, K>,
+pub(crate) struct PlanarState<S: Simd> {
+    pub height: Pack<S, 1>,
+    pub sine: Pack<S, 1>,
+    pub cosine: Pack<S, 1>,
+    pub motion: PlanarMotion<S>,
 }
 
 /// v_x, v_z and ω.
 #[derive(Clone, Copy)]
-pub(crate) struct PlanarMotion<S: Simd, const K: usize> {
-    pub vx: Pack<S, K>,
-    pub vz: Pack<S, K>,
-    pub spin: Pack<S, K>,
+pub(crate) struct PlanarMotion<S: Simd> {
+    pub vx: Pack<S, 1>,
+    pub vz: Pack<S, 1>,
+    pub spin: Pack<S, 1>,
 }
 
-impl<S: Simd, const K: usize> SymmetricState<S, K> for PlanarState<S, K> {
-    type Motion = PlanarMotion<S, K>;
+impl<S: Simd> SymmetricState<S> for PlanarState<S> {
+    type Motion = PlanarMotion<S>;
 
     #[inline(always)]
     fn resting(simd: S, height: f64) -> Self {
-        let zero = Pack::splat(simd, 0.0);
         Self {
             height: Pack::splat(simd, height),
-            sine: zero,
             cosine: Pack::splat(simd, 1.0),
-            motion: PlanarMotion {
-                vx: zero,
-                vz: zero,
-                spin: zero,
-            },
+            ..Self::none(simd)
         }
     }
 
@@ -52,51 +46,37 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for PlanarState<S, K> {
     }
 
     #[inline(always)]
-    fn height(&self) -> Pack<S, K> {
+    fn height(&self) -> Pack<S, 1> {
         self.height
     }
 
     #[inline(always)]
-    fn vz(&self) -> Pack<S, K> {
+    fn vz(&self) -> Pack<S, 1> {
         self.motion.vz
     }
 
     #[inline(always)]
-    fn sine(&self) -> Pack<S, K> {
+    fn sine(&self) -> Pack<S, 1> {
         self.sine
     }
 
     #[inline(always)]
-    fn cos_tilt(&self) -> Pack<S, K> {
+    fn cos_tilt(&self) -> Pack<S, 1> {
         self.cosine
     }
 
     #[inline(always)]
-    fn motion(&self) -> PlanarMotion<S, K> {
+    fn motion(&self) -> PlanarMotion<S> {
         self.motion
     }
 
     #[inline(always)]
-    fn or(self, mask: Mask<S, K>, other: &Self) -> Self {
-        Self {
-            height: mask.select(other.height, self.height),
-            sine: mask.select(other.sine, self.sine),
-            cosine: mask.select(other.cosine, self.cosine),
-            motion: PlanarMotion {
-                vx: mask.select(other.motion.vx, self.motion.vx),
-                vz: mask.select(other.motion.vz, self.motion.vz),
-                spin: mask.select(other.motion.spin, self.motion.spin),
-            },
-        }
-    }
-
-    #[inline(always)]
-    fn with_motion(self, motion: PlanarMotion<S, K>) -> Self {
+    fn with_motion(self, motion: PlanarMotion<S>) -> Self {
         Self { motion, ..self }
     }
 
     #[inline(always)]
-    fn in_space(&self) -> SpatialState<S, K> {
+    fn in_space(&self) -> SpatialState<S> {
         let PlanarMotion { vx, vz, spin } = self.motion;
         let zero = Pack::splat(self.height.simd(), 0.0);
         SpatialState {
@@ -110,20 +90,20 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for PlanarState<S, K> {
     }
 
     #[inline(always)]
-    fn rotational_energy(&self, body: &Body) -> Pack<S, K> {
+    fn rotational_energy(&self, body: &Body) -> Pack<S, 1> {
         let spin = self.motion.spin;
         0.5 * body.transverse * (spin * spin)
     }
 
     #[inline(always)]
-    fn kinetic_energy(&self, body: &Body) -> Pack<S, K> {
+    fn kinetic_energy(&self, body: &Body) -> Pack<S, 1> {
         let PlanarMotion { vx, vz, .. } = self.motion;
         0.5 * vx.mul_add(vx, vz * vz) + self.rotational_energy(body)
     }
 }
 
 /// A flight is the state at its start.
-impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
+impl<S: Simd> Flight<S> for PlanarState<S> {
     type State = Self;
 
     /// The slope is 0: over an incline the motion is spatial, because gravity has a component outside the plane of the axis.
@@ -138,23 +118,23 @@ impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
     }
 
     #[inline(always)]
-    fn rate(&self) -> Pack<S, K> {
+    fn rate(&self) -> Pack<S, 1> {
         self.motion.spin
     }
 
     #[inline(always)]
-    fn bounds(&self) -> [Pack<S, K>; 3] {
+    fn bounds(&self) -> [Pack<S, 1>; 3] {
         let (rate, one) = (self.rate(), Pack::splat(self.height.simd(), 1.0));
         [rate * rate, one, one]
     }
 
     #[inline(always)]
-    fn attitude(&self, (sin, cos): (Pack<S, K>, Pack<S, K>)) -> Attitude<S, K> {
+    fn attitude(&self, (sin, cos): (Pack<S, 1>, Pack<S, 1>)) -> Attitude<S> {
         self.now().after(sin, cos)
     }
 
     #[inline(always)]
-    fn axis_motion(&self, attitude: Attitude<S, K>) -> AxisMotion<S, K> {
+    fn axis_motion(&self, attitude: Attitude<S>) -> AxisMotion<S, 1> {
         let square = self.rate() * self.rate();
         AxisMotion {
             cos_tilt: attitude.cosine,
@@ -165,12 +145,12 @@ impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
     }
 
     #[inline(always)]
-    fn axis_motion_at_start(&self) -> AxisMotion<S, K> {
+    fn axis_motion_at_start(&self) -> AxisMotion<S, 1> {
         self.axis_motion(self.now())
     }
 
     #[inline(always)]
-    fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Self {
+    fn state(&self, time: Pack<S, 1>, attitude: Attitude<S>) -> Self {
         let Attitude { sine, cosine } = attitude;
         // One Newton step to unit length; rounding would otherwise accumulate over the impacts.
         let length = sine.mul_add(sine, cosine * cosine).mul_add(-0.5, 1.5);
@@ -186,14 +166,14 @@ impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
     }
 
     #[inline(always)]
-    fn end(&mut self, state: Self, height: Pack<S, K>) {
+    fn end(&mut self, state: Self, height: Pack<S, 1>) {
         *self = Self { height, ..state };
     }
 }
 
-impl<S: Simd, const K: usize> PlanarState<S, K> {
+impl<S: Simd> PlanarState<S> {
     #[inline(always)]
-    fn now(&self) -> Attitude<S, K> {
+    fn now(&self) -> Attitude<S> {
         Attitude {
             sine: self.sine,
             cosine: self.cosine,

@@ -4,24 +4,20 @@
 //! where **k** = **p**(**p**·**e**)/Ω² and **e** is the axis at the start (3).
 
 use super::{Attitude, Flight, SpatialMotion, SpatialState, State, SymmetricState};
-use crate::math::{UNITS, Vector, Vectors};
+use crate::math::{UNITS, Vectors};
 use crate::shape::{AxisMotion, Body};
-use crate::simd::{Mask, Pack};
+use crate::simd::{Lanewise, Pack};
 use pulp::Simd;
 
-impl<S: Simd, const K: usize> SymmetricState<S, K> for SpatialState<S, K> {
-    type Motion = SpatialMotion<S, K>;
+impl<S: Simd> SymmetricState<S> for SpatialState<S> {
+    type Motion = SpatialMotion<S>;
 
     #[inline(always)]
     fn resting(simd: S, height: f64) -> Self {
-        let zero = Vectors::splat(simd, Vector::default());
         Self {
             height: Pack::splat(simd, height),
             axis: Vectors::splat(simd, UNITS[2]),
-            motion: SpatialMotion {
-                velocity: zero,
-                precession: zero,
-            },
+            ..Self::none(simd)
         }
     }
 
@@ -34,45 +30,32 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for SpatialState<S, K> {
     }
 
     #[inline(always)]
-    fn height(&self) -> Pack<S, K> {
+    fn height(&self) -> Pack<S, 1> {
         self.height
     }
 
     #[inline(always)]
-    fn vz(&self) -> Pack<S, K> {
+    fn vz(&self) -> Pack<S, 1> {
         self.motion.velocity.z
     }
 
     #[inline(always)]
-    fn sine(&self) -> Pack<S, K> {
+    fn sine(&self) -> Pack<S, 1> {
         self.axis.horizontal()
     }
 
     #[inline(always)]
-    fn cos_tilt(&self) -> Pack<S, K> {
+    fn cos_tilt(&self) -> Pack<S, 1> {
         self.axis.z
     }
 
     #[inline(always)]
-    fn motion(&self) -> SpatialMotion<S, K> {
+    fn motion(&self) -> SpatialMotion<S> {
         self.motion
     }
 
     #[inline(always)]
-    fn or(self, mask: Mask<S, K>, other: &Self) -> Self {
-        let (own, motion) = (self.motion, other.motion);
-        Self {
-            height: mask.select(other.height, self.height),
-            axis: self.axis.or(mask, other.axis),
-            motion: SpatialMotion {
-                velocity: own.velocity.or(mask, motion.velocity),
-                precession: own.precession.or(mask, motion.precession),
-            },
-        }
-    }
-
-    #[inline(always)]
-    fn with_motion(self, motion: SpatialMotion<S, K>) -> Self {
+    fn with_motion(self, motion: SpatialMotion<S>) -> Self {
         Self { motion, ..self }
     }
 
@@ -83,13 +66,13 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for SpatialState<S, K> {
 
     /// **ω**·**Λ**/2, the rotational part of (12).
     #[inline(always)]
-    fn rotational_energy(&self, body: &Body) -> Pack<S, K> {
+    fn rotational_energy(&self, body: &Body) -> Pack<S, 1> {
         let precession = self.motion.precession;
         0.5 * body.transverse * self.spin(body).dot(precession)
     }
 
     #[inline(always)]
-    fn kinetic_energy(&self, body: &Body) -> Pack<S, K> {
+    fn kinetic_energy(&self, body: &Body) -> Pack<S, 1> {
         let velocity = self.motion.velocity;
         0.5 * velocity.dot(velocity) + self.rotational_energy(body)
     }
@@ -97,30 +80,30 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for SpatialState<S, K> {
 
 /// A flight: the state at its start, and the constants of its rotation.
 #[derive(Clone, Copy)]
-pub(crate) struct SpatialFlight<S: Simd, const K: usize> {
-    start: SpatialState<S, K>,
+pub(crate) struct SpatialFlight<S: Simd> {
+    start: SpatialState<S>,
     slope: f64,
     /// Ω and Ω².
-    rate: Pack<S, K>,
-    square: Pack<S, K>,
+    rate: Pack<S, 1>,
+    square: Pack<S, 1>,
     /// **p**·**e**/Ω² and 1/Ω; 0 for a body that does not rotate.
-    share: Pack<S, K>,
-    inverse: Pack<S, K>,
+    share: Pack<S, 1>,
+    inverse: Pack<S, 1>,
     /// e_z is `centre + cosine cos φ + sine sin φ`, φ = Ωt (3).
-    centre: Pack<S, K>,
-    cosine: Pack<S, K>,
-    sine: Pack<S, K>,
-    amplitude: Pack<S, K>,
+    centre: Pack<S, 1>,
+    cosine: Pack<S, 1>,
+    sine: Pack<S, 1>,
+    amplitude: Pack<S, 1>,
 }
 
 /// Ω² below which a body is treated as not rotating.
 const SLOWEST: f64 = 1e-300;
 
-impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
-    type State = SpatialState<S, K>;
+impl<S: Simd> Flight<S> for SpatialFlight<S> {
+    type State = SpatialState<S>;
 
     #[inline(always)]
-    fn new(start: SpatialState<S, K>, slope: f64) -> Self {
+    fn new(start: SpatialState<S>, slope: f64) -> Self {
         let (axis, precession) = (start.axis, start.motion.precession);
         let square = precession.dot(precession);
         let rate = square.sqrt();
@@ -146,28 +129,28 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
     }
 
     #[inline(always)]
-    fn start(&self) -> &SpatialState<S, K> {
+    fn start(&self) -> &SpatialState<S> {
         &self.start
     }
 
     #[inline(always)]
-    fn rate(&self) -> Pack<S, K> {
+    fn rate(&self) -> Pack<S, 1> {
         self.rate
     }
 
     #[inline(always)]
-    fn bounds(&self) -> [Pack<S, K>; 3] {
+    fn bounds(&self) -> [Pack<S, 1>; 3] {
         let highest = self.centre.abs() + self.amplitude;
         [self.square, self.amplitude, highest]
     }
 
     #[inline(always)]
-    fn attitude(&self, (sine, cosine): (Pack<S, K>, Pack<S, K>)) -> Attitude<S, K> {
+    fn attitude(&self, (sine, cosine): (Pack<S, 1>, Pack<S, 1>)) -> Attitude<S> {
         Attitude { sine, cosine }
     }
 
     #[inline(always)]
-    fn axis_motion(&self, Attitude { sine, cosine }: Attitude<S, K>) -> AxisMotion<S, K> {
+    fn axis_motion(&self, Attitude { sine, cosine }: Attitude<S>) -> AxisMotion<S, 1> {
         let turning = self.cosine.mul_add(cosine, self.sine * sine); // (3)
         let leading = self.sine.mul_add(cosine, -(self.cosine * sine)); // a quarter of a turn later
         AxisMotion {
@@ -179,7 +162,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
     }
 
     #[inline(always)]
-    fn axis_motion_at_start(&self) -> AxisMotion<S, K> {
+    fn axis_motion_at_start(&self) -> AxisMotion<S, 1> {
         AxisMotion {
             cos_tilt: self.start.axis.z,
             rate: self.rate * self.sine,
@@ -189,7 +172,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
     }
 
     #[inline(always)]
-    fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> SpatialState<S, K> {
+    fn state(&self, time: Pack<S, 1>, attitude: Attitude<S>) -> SpatialState<S> {
         let SpatialState {
             axis,
             motion,
@@ -215,7 +198,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
     }
 
     #[inline(always)]
-    fn end(&mut self, state: SpatialState<S, K>, height: Pack<S, K>) {
+    fn end(&mut self, state: SpatialState<S>, height: Pack<S, 1>) {
         self.start = SpatialState { height, ..state };
     }
 }

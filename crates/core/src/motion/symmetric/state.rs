@@ -68,7 +68,7 @@ impl State {
     }
 
     /// The state in a single lane.
-    pub(crate) fn in_lane(&self) -> SpatialState<Scalar, 1> {
+    pub(crate) fn in_lane(&self) -> SpatialState<Scalar> {
         let mut state = SpatialState::resting(Scalar::new(), 0.0);
         state.put(0, self);
         state
@@ -77,24 +77,24 @@ impl State {
 
 /// Position and motion of a body in each lane, as [`State`].
 #[derive(Clone, Copy)]
-pub(crate) struct SpatialState<S: Simd, const K: usize> {
-    pub height: Pack<S, K>,
+pub(crate) struct SpatialState<S: Simd> {
+    pub height: Pack<S, 1>,
     /// Unit vector of the symmetry axis, from sphere 2 to sphere 1.
-    pub axis: Vectors<S, K>,
-    pub motion: SpatialMotion<S, K>,
+    pub axis: Vectors<S, 1>,
+    pub motion: SpatialMotion<S>,
 }
 
 /// v_G and **p** = **Λ**/J_xx.
 #[derive(Clone, Copy)]
-pub(crate) struct SpatialMotion<S: Simd, const K: usize> {
-    pub velocity: Vectors<S, K>,
-    pub precession: Vectors<S, K>,
+pub(crate) struct SpatialMotion<S: Simd> {
+    pub velocity: Vectors<S, 1>,
+    pub precession: Vectors<S, 1>,
 }
 
-impl<S: Simd, const K: usize> SpatialState<S, K> {
+impl<S: Simd> SpatialState<S> {
     /// Angular velocity **ω** = Ĵ⁻¹**Λ**.
     #[inline(always)]
-    pub fn spin(&self, body: &Body) -> Vectors<S, K> {
+    pub fn spin(&self, body: &Body) -> Vectors<S, 1> {
         let axial = body.transverse / body.axial - 1.0;
         let precession = self.motion.precession;
         self.axis

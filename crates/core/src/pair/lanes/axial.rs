@@ -14,7 +14,7 @@ use crate::pair::encounter::End;
 use crate::pair::partner::{FreeBody, Partner};
 use crate::shape::{Piece, PieceKind};
 use crate::simd::elementary::sincos_in_lanes;
-use crate::simd::{Mask, Pack};
+use crate::simd::{Lanewise, Mask, Pack};
 use pulp::Simd;
 
 /// A body of balls on its axis, or of one part on it.
@@ -140,8 +140,7 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
 
     #[inline(always)]
     fn none(simd: S) -> Self {
-        let zero = Pack::splat(simd, 0.0);
-        let still = Vectors::splat(simd, Vector::default());
+        let (zero, still) = (Pack::none(simd), Vectors::none(simd));
         Self {
             axis: Vectors::splat(simd, UNITS[2]),
             precession: still,
@@ -223,11 +222,6 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
     ) -> [Vectors<S, 1>; 2] {
         let height = sign * ball.place.z;
         [axis.mul_add(height, y), change.mul_add(height, velocity)]
-    }
-
-    #[inline(always)]
-    fn nowhere(simd: S) -> Pack<S, 1> {
-        Pack::splat(simd, 0.0)
     }
 
     #[inline(always)]

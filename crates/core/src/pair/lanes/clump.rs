@@ -1,12 +1,12 @@
 //! Bodies that are balls at any places.
 
 use super::{Encountering, LaneBall, LaneBody, LaneEncounters, LaneFlight, LanePair, Surfaces};
-use crate::math::{Quaternion, Quaternions, Vector, Vectors};
+use crate::math::{Quaternion, Quaternions, Vectors};
 use crate::motion::Rotations;
 use crate::pair::encounter::End;
 use crate::pair::partner::{FreeBody, Partner};
 use crate::shape::{PieceKind, Top};
-use crate::simd::{Mask, Pack};
+use crate::simd::{Lanewise, Mask, Pack};
 use pulp::{Simd, WithSimd};
 
 /// A body of balls.
@@ -74,7 +74,7 @@ impl<S: Simd> LaneFlight<S> for ClumpFlight<S> {
     fn none(simd: S) -> Self {
         Self {
             attitude: Quaternions::splat(simd, Quaternion::IDENTITY),
-            spin: Vectors::splat(simd, Vector::default()),
+            spin: Vectors::none(simd),
             rotations: Rotations::none(simd),
             bend: Pack::splat(simd, 0.0),
             moved: Vec::new(),
@@ -126,11 +126,6 @@ impl<S: Simd> LaneFlight<S> for ClumpFlight<S> {
     ) -> [Vectors<S, 1>; 2] {
         let [place, change] = self.moved[number];
         [place.mul_add(sign, y), change.mul_add(sign, velocity)]
-    }
-
-    #[inline(always)]
-    fn nowhere(simd: S) -> Vectors<S, 1> {
-        Vectors::splat(simd, Vector::default())
     }
 
     #[inline(always)]

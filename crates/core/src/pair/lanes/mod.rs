@@ -15,7 +15,7 @@ use super::partner::{Approach, FreeBody, Partner};
 use crate::contact::{BallGaps, INVISIBLE};
 use crate::law::{Frictionless, Law, Rule};
 use crate::math::{UNITS, Vector, Vectors};
-use crate::simd::{Level, Mask, Pack};
+use crate::simd::{Lanewise, Level, Mask, Pack};
 use pulp::{Simd, WithSimd};
 
 /// Looks along a flight after which the search is left to others.
@@ -71,7 +71,7 @@ pub(super) trait LaneBody: Sized {
 pub(super) trait LaneFlight<S: Simd>: Sized {
     type Body: LaneBody<Flight<S> = Self>;
     /// A place of the body.
-    type Place: Copy;
+    type Place: Lanewise<S>;
     /// The body at a time.
     type Pose;
     /// Bodies whose encounters have ended.
@@ -99,7 +99,6 @@ pub(super) trait LaneFlight<S: Simd>: Sized {
         from: [Vectors<S, 1>; 2],
     ) -> [Vectors<S, 1>; 2];
 
-    fn nowhere(simd: S) -> Self::Place;
     /// Makes it that of a ball in some lanes.
     fn choose(place: &mut Self::Place, lanes: Mask<S, 1>, ball: &LaneBall);
     /// A vector with that to a place now added with a sign.
@@ -266,8 +265,7 @@ pub(super) type LaneContact<S, P> = (Vectors<S, 1>, [P; 2], Pack<S, 1>);
 impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
     #[inline(always)]
     fn none(simd: S) -> Self {
-        let zero = Pack::splat(simd, 0.0);
-        let still = Vectors::splat(simd, Vector::default());
+        let (zero, still) = (Pack::none(simd), Vectors::none(simd));
         Self {
             apart: Vectors::splat(simd, UNITS[2]),
             velocity: still,
@@ -402,7 +400,7 @@ impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
         balls: Pack<S, 1>,
     ) -> LaneContact<S, F::Place> {
         let simd = balls.simd();
-        let nowhere = F::nowhere(simd);
+        let nowhere = F::Place::none(simd);
         let (mut places, mut radius) = ([nowhere; 2], Pack::splat(simd, 0.0));
         let mut number = 0.0;
         for ball in pair.shapes[0].balls() {
@@ -516,7 +514,7 @@ impl<B: LaneBody> LaneEncounters<'_, '_, '_, B> {
         let size = touched.select(size, 0.0);
         let apart = coefficient * speed;
         if let Some(hit) = &mut self.hit {
-            let from = Vectors::splat(zero.simd(), Vector::default());
+            let from = Vectors::none(zero.simd());
             let firsts = one.reached(places[0], 1.0, from) - normal * radius;
             let mut lanes = bits(touched);
             while let Some(lane) = take(&mut lanes) {

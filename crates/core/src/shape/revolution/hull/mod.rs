@@ -13,7 +13,7 @@ mod ellipsoid;
 pub use balls::{Balls, EqualBalls, OneBall, TwoBalls};
 pub use ellipsoid::Ellipsoid;
 
-use crate::simd::{Mask, Pack, one};
+use crate::simd::{Mask, Pack, lanewise, one};
 use pulp::{Scalar, Simd};
 
 /// The end of the body that touches: one of two spheres, or one half of a smooth hull.
@@ -68,6 +68,8 @@ pub(crate) struct HullPart<S: Simd> {
     /// the part, which the derivatives there need again.
     pub own: Pack<S, 1>,
 }
+
+lanewise! { HullPart<S> { one, own } }
 
 /// The vertical component of the axis, e_z, and its time derivatives. Since e_z = c + A cos(Ωt + φ), each derivative from the third
 /// on is −Ω² times the one two orders below.
