@@ -47,26 +47,28 @@ pub(crate) fn bounce_block(
 ) -> Result<(), Error> {
     let count = particles.len() as u64;
     let plan = runs.plan();
-    let level = match (&plan.run.body, level) {
-        // A law of one's own may take long: the fewer contacts it is asked about at a time, the sooner a run that is cancelled ends.
-        _ if plan.law.custom.is_some() => Level::Scalar,
-        // Numbers by themselves are followed faster without the masks of AVX-512.
-        (AnyBody::Rigid(_), Level::Avx512) => Level::Avx2,
-        _ => level,
+    // A law of one's own may take long: the fewer contacts it is asked about at a time, the sooner a run that is cancelled ends.
+    let level = match plan.law.custom {
+        Some(_) => Level::Scalar,
+        None => level,
     };
-    let ended = level.run(Block {
+    let block = Block {
         runs,
         particles,
         monitor,
         sink,
-    });
+    };
+    let ended = match &plan.run.body {
+        AnyBody::Revolution(solid) => level.run(SymmetricBlock(block, &solid.scaled)),
+        AnyBody::Rigid(body) => level.run_scalar_at(RigidBlock(block, body)),
+    };
     // The other threads need not go on.
     ended.inspect_err(|_| monitor.cancel())?;
     monitor.add_finished(count);
     Ok(())
 }
 
-/// The particles of a block, compiled for each SIMD level.
+/// The particles of a block.
 struct Block<'a, T> {
     runs: &'a JoinedRuns<'a>,
     particles: Range<usize>,
@@ -74,16 +76,19 @@ struct Block<'a, T> {
     sink: &'a mut T,
 }
 
-impl<T: ImpactSink> WithSimd for Block<'_, T> {
+/// Bodies of revolution, one in each lane.
+struct SymmetricBlock<'a, T>(Block<'a, T>, &'a Body);
+
+/// Bodies of any shape, one after the other.
+struct RigidBlock<'a, T>(Block<'a, T>, &'a Rigid);
+
+impl<T: ImpactSink> WithSimd for SymmetricBlock<'_, T> {
     type Output = Result<(), Error>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let plan = self.runs.plan();
-        let body = match &plan.run.body {
-            AnyBody::Rigid(body) => return self.rigid(simd, body),
-            AnyBody::Revolution(solid) => &solid.scaled,
-        };
+        let Self(block, body) = self;
+        let plan = block.runs.plan();
         let (law, slope) = (&plan.law, plan.slope);
         // The paper's runs have a bounce loop of their own where they are not held up by memory.
         match (&body.hull, plan.at_rest, &plan.law.steady()) {
@@ -94,10 +99,10 @@ impl<T: ImpactSink> WithSimd for Block<'_, T> {
                     law,
                     slope,
                 };
-                self.run::<S, Planar>(simd, body, &cycle)
+                block.run::<S, Planar>(simd, body, &cycle)
             }
-            (_, true, _) => self.run::<S, Planar>(simd, body, &General { body, law, slope }),
-            (_, false, _) => self.run::<S, Spatial>(simd, body, &General { body, law, slope }),
+            (_, true, _) => block.run::<S, Planar>(simd, body, &General { body, law, slope }),
+            (_, false, _) => block.run::<S, Spatial>(simd, body, &General { body, law, slope }),
         }
     }
 }
@@ -121,24 +126,28 @@ impl<T: ImpactSink> Block<'_, T> {
         )
         .map_err(|lost| error(runs, lost))
     }
+}
 
-    /// Bodies of any shape, one after the other.
+impl<T: ImpactSink> WithSimd for RigidBlock<'_, T> {
+    type Output = Result<(), Error>;
+
     #[inline(always)]
-    fn rigid<S: Simd>(self, simd: S, body: &Rigid) -> Result<(), Error> {
-        let runs = self.runs;
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self(block, body) = self;
+        let runs = block.runs;
         let plan = runs.plan();
         let bouncing = rigid::Bouncing { plan, body };
-        self.sink.begin();
-        for particle in self.particles {
-            if self.monitor.is_cancelled() {
+        block.sink.begin();
+        for particle in block.particles {
+            if block.monitor.is_cancelled() {
                 break;
             }
             let (plan, number) = runs.origin(particle);
             let start = plan.rigid(body, number);
             let chance = |impact| of_impact(plan.run.seed, number as u64, impact);
             bouncing
-                .bounce(simd, (particle, start), chance, self.sink, || {
-                    !self.monitor.is_cancelled()
+                .bounce(simd, (particle, start), chance, block.sink, || {
+                    !block.monitor.is_cancelled()
                 })
                 .map_err(|lost| error(runs, lost))?;
         }

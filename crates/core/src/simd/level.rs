@@ -90,18 +90,25 @@ impl Level {
 
     /// Runs what has no packs: with fused multiply-add where this machine has it, but not compiled for the widest registers as well,
     /// which it does not use.
-    #[cfg(target_arch = "x86_64")]
     pub(crate) fn run_scalar<W: WithSimd>(work: W) -> W::Output {
+        #[cfg(not(target_arch = "x86_64"))]
+        return Self::best().run(work);
+        #[cfg(target_arch = "x86_64")]
         match pulp::x86::V3::try_new() {
             Some(simd) => Simd::vectorize(simd, work),
             None => Simd::vectorize(Scalar::new(), work),
         }
     }
 
-    /// Runs what has no packs.
-    #[cfg(not(target_arch = "x86_64"))]
-    pub(crate) fn run_scalar<W: WithSimd>(work: W) -> W::Output {
-        Self::best().run(work)
+    /// The same at this level, or at the one below the widest.
+    pub(crate) fn run_scalar_at<W: WithSimd>(self, work: W) -> W::Output {
+        #[cfg(not(target_arch = "x86_64"))]
+        return self.run(work);
+        #[cfg(target_arch = "x86_64")]
+        match self {
+            Self::Scalar => Simd::vectorize(Scalar::new(), work),
+            _ => Self::run_scalar(work),
+        }
     }
 
     fn try_run<W: WithSimd>(self, work: W) -> Option<W::Output> {
