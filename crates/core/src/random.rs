@@ -131,7 +131,7 @@ impl WithSimd for Formed<'_> {
             NumberForm::Turn(place) => place,
             _ => 1,
         };
-        for some in self.numbers.chunks_mut(Pack::<S, 1>::WIDTH) {
+        for some in self.numbers.chunks_mut(Pack::<S>::WIDTH) {
             let (mut others, mut turns) = (Pack::splat(simd, 0.0), Pack::splat(simd, 0.0));
             for (lane, numbers) in some.iter().enumerate() {
                 others.as_mut_slice()[lane] = numbers[1 - place];
@@ -161,7 +161,7 @@ pub fn normal_pair((size, turn): (f64, f64)) -> (f64, f64) {
 }
 
 #[inline(always)]
-fn normals_in_lanes<S: Simd>(mut size: Pack<S, 1>, turn: Pack<S, 1>) -> [Pack<S, 1>; 2] {
+fn normals_in_lanes<S: Simd>(mut size: Pack<S>, turn: Pack<S>) -> [Pack<S>; 2] {
     let (sine, cosine) = sincos_in_lanes(TAU * turn);
     for number in size.as_mut_slice() {
         *number = ln(1.0 - *number);

@@ -15,7 +15,7 @@ use crate::math::Vector;
 use crate::motion::{SpatialState, State, SymmetricState};
 use crate::random::of_impact;
 use crate::shape::{Body, Hull, Sphere, with_hull};
-use crate::simd::one;
+use crate::simd::{Lanewise, one};
 use pulp::{Scalar, Simd};
 use std::cell::Cell;
 

@@ -18,14 +18,14 @@ use pulp::Simd;
 /// The gap of two balls in each lane.
 #[derive(Clone, Copy)]
 pub(crate) struct BallGaps<S: Simd> {
-    pub width: Pack<S, 1>,
-    pub rate: Pack<S, 1>,
+    pub width: Pack<S>,
+    pub rate: Pack<S>,
     /// w² over the distance of the centres, by which f bends at least.
-    pub bent: Pack<S, 1>,
+    pub bent: Pack<S>,
     /// M.
-    pub bound: Pack<S, 1>,
-    distance: Pack<S, 1>,
-    spread: Pack<S, 1>,
+    pub bound: Pack<S>,
+    distance: Pack<S>,
+    spread: Pack<S>,
 }
 
 /// A ball or a spheroid on the axis of a body, with x, β² and γ.
@@ -43,13 +43,13 @@ pub(crate) struct RoundPart {
 #[derive(Clone, Copy)]
 pub(crate) struct TurningAxis<S: Simd> {
     /// **e** and **e**′.
-    pub axis: Vectors<S, 1>,
-    pub change: Vectors<S, 1>,
+    pub axis: Vectors<S>,
+    pub change: Vectors<S>,
     /// **P**, and its length.
-    pub turn: Vectors<S, 1>,
-    pub rate: Pack<S, 1>,
+    pub turn: Vectors<S>,
+    pub rate: Pack<S>,
     /// D.
-    pub swing: Pack<S, 1>,
+    pub swing: Pack<S>,
 }
 
 /// Two bodies of one [`RoundPart`] each, and their reach.
@@ -60,30 +60,30 @@ pub(crate) struct RoundParts<'a> {
 
 /// What a look at two of them finds: a certified step, the rate of the gap, a bound on |f″|.
 pub(crate) struct RoundStep<S: Simd> {
-    pub clear: Pack<S, 1>,
-    pub rate: Pack<S, 1>,
-    pub bound: Pack<S, 1>,
+    pub clear: Pack<S>,
+    pub rate: Pack<S>,
+    pub bound: Pack<S>,
 }
 
 /// Where two of them touch a plane that parts them: the places on the axes about which both are balls, and the radius of the first.
 pub(crate) struct RoundContact<S: Simd> {
-    pub places: [Pack<S, 1>; 2],
-    pub radius: Pack<S, 1>,
+    pub places: [Pack<S>; 2],
+    pub radius: Pack<S>,
 }
 
 /// c, h, 1/h and γc/h of both, and the gap along a normal.
 struct RoundWidth<S: Simd> {
-    heights: [Pack<S, 1>; 2],
-    sizes: [Pack<S, 1>; 2],
-    inverse: [Pack<S, 1>; 2],
-    shifts: [Pack<S, 1>; 2],
-    width: Pack<S, 1>,
+    heights: [Pack<S>; 2],
+    sizes: [Pack<S>; 2],
+    inverse: [Pack<S>; 2],
+    shifts: [Pack<S>; 2],
+    width: Pack<S>,
 }
 
 impl<S: Simd> BallGaps<S> {
     /// The gaps of balls whose centres differ by **y**, which changes at a rate and has a bounded acceleration, and the sum of their radii.
     #[inline(always)]
-    pub fn new(y: Vectors<S, 1>, change: Vectors<S, 1>, radii: f64, bound: Pack<S, 1>) -> Self {
+    pub fn new(y: Vectors<S>, change: Vectors<S>, radii: f64, bound: Pack<S>) -> Self {
         let distance = y.dot(y).sqrt();
         let part = 1.0 / distance;
         let rate = y.dot(change) * part;
@@ -100,7 +100,7 @@ impl<S: Simd> BallGaps<S> {
 
     /// The step of [`BallGap`](super::pair::BallGap), where `shortest` is a time in which no gap changes visibly if its rate is 0.
     #[inline(always)]
-    pub fn step(&self, shortest: Pack<S, 1>) -> Pack<S, 1> {
+    pub fn step(&self, shortest: Pack<S>) -> Pack<S> {
         let zero = self.width * 0.0;
         let (width, speed) = (self.width.max(0.0), self.rate.max(-self.rate));
         let closes = self.rate.lt(0.0);
@@ -121,15 +121,15 @@ impl<S: Simd> BallGaps<S> {
 struct RoundBound<'a, S: Simd> {
     parts: [&'a RoundPart; 2],
     /// f and **n**·**Y**′.
-    width: Pack<S, 1>,
-    across: Pack<S, 1>,
+    width: Pack<S>,
+    across: Pack<S>,
     /// c, c′ and h.
-    heights: [Pack<S, 1>; 2],
-    changes: [Pack<S, 1>; 2],
-    sizes: [Pack<S, 1>; 2],
+    heights: [Pack<S>; 2],
+    changes: [Pack<S>; 2],
+    sizes: [Pack<S>; 2],
     /// q², and K.
-    squares: [Pack<S, 1>; 2],
-    curved: Pack<S, 1>,
+    squares: [Pack<S>; 2],
+    curved: Pack<S>,
 }
 
 impl RoundPart {
@@ -154,7 +154,7 @@ impl RoundPart {
 
     /// D, where **Λ** and the axis make an angle of this sine and cosine.
     #[inline(always)]
-    pub fn swing<S: Simd>(&self, sine: Pack<S, 1>, cosine: Pack<S, 1>) -> Pack<S, 1> {
+    pub fn swing<S: Simd>(&self, sine: Pack<S>, cosine: Pack<S>) -> Pack<S> {
         let [height, along, across] = self.extents;
         let [x, y] = [sine * along, cosine * across];
         let rest = x.mul_add(x, y * y).sqrt().max(across);
@@ -163,7 +163,7 @@ impl RoundPart {
 
     /// √(β² s + γ c²), for the square s of a vector and its scalar product c with the axis.
     #[inline(always)]
-    fn size<S: Simd>(&self, square: Pack<S, 1>, along: Pack<S, 1>) -> Pack<S, 1> {
+    fn size<S: Simd>(&self, square: Pack<S>, along: Pack<S>) -> Pack<S> {
         square
             .mul_add(self.square, along * along * self.excess)
             .sqrt()
@@ -173,11 +173,7 @@ impl RoundPart {
 impl RoundParts<'_> {
     /// From the centre of the second part to that of the first, if those of the bodies are `apart`; or the rate of that, with those of the axes.
     #[inline(always)]
-    pub fn between<S: Simd>(
-        &self,
-        apart: Vectors<S, 1>,
-        axes: [Vectors<S, 1>; 2],
-    ) -> Vectors<S, 1> {
+    pub fn between<S: Simd>(&self, apart: Vectors<S>, axes: [Vectors<S>; 2]) -> Vectors<S> {
         let [first, second] = self.parts;
         axes[1].mul_add(-second.place, axes[0].mul_add(first.place, apart))
     }
@@ -185,9 +181,9 @@ impl RoundParts<'_> {
     #[inline(always)]
     fn along<S: Simd>(
         &self,
-        n: Vectors<S, 1>,
-        between: Vectors<S, 1>,
-        axes: [Vectors<S, 1>; 2],
+        n: Vectors<S>,
+        between: Vectors<S>,
+        axes: [Vectors<S>; 2],
     ) -> RoundWidth<S> {
         let one = Pack::splat(n.x.simd(), 1.0);
         let heights = [n.dot(axes[0]), n.dot(axes[1])];
@@ -212,12 +208,12 @@ impl RoundParts<'_> {
     #[inline(always)]
     pub fn normal<S: Simd>(
         &self,
-        start: Vectors<S, 1>,
-        between: Vectors<S, 1>,
-        axes: [Vectors<S, 1>; 2],
-        lanes: Mask<S, 1>,
+        start: Vectors<S>,
+        between: Vectors<S>,
+        axes: [Vectors<S>; 2],
+        lanes: Mask<S>,
         rough: bool,
-    ) -> Vectors<S, 1> {
+    ) -> Vectors<S> {
         let simd = start.x.simd();
         let (zero, one) = (Pack::splat(simd, 0.0), Pack::splat(simd, 1.0));
         let units = [
@@ -280,10 +276,10 @@ impl RoundParts<'_> {
     #[inline(always)]
     pub fn step<S: Simd>(
         &self,
-        n: Vectors<S, 1>,
-        [apart, velocity]: [Vectors<S, 1>; 2],
+        n: Vectors<S>,
+        [apart, velocity]: [Vectors<S>; 2],
         bodies: &[TurningAxis<S>; 2],
-        (leave, speed): (Mask<S, 1>, Pack<S, 1>),
+        (leave, speed): (Mask<S>, Pack<S>),
     ) -> RoundStep<S> {
         let simd = n.x.simd();
         let zero = Pack::splat(simd, 0.0);
@@ -349,9 +345,9 @@ impl RoundParts<'_> {
     #[inline(always)]
     pub fn contact<S: Simd>(
         &self,
-        n: Vectors<S, 1>,
-        between: Vectors<S, 1>,
-        axes: [Vectors<S, 1>; 2],
+        n: Vectors<S>,
+        between: Vectors<S>,
+        axes: [Vectors<S>; 2],
     ) -> RoundContact<S> {
         let now = self.along(n, between, axes);
         let [first, second] = self.parts;
@@ -364,7 +360,7 @@ impl RoundParts<'_> {
 
 impl<S: Simd> RoundWidth<S> {
     #[inline(always)]
-    fn choose(&mut self, lanes: Mask<S, 1>, other: &Self) {
+    fn choose(&mut self, lanes: Mask<S>, other: &Self) {
         for i in 0..2 {
             self.heights[i] = lanes.select(other.heights[i], self.heights[i]);
             self.sizes[i] = lanes.select(other.sizes[i], self.sizes[i]);
@@ -377,7 +373,7 @@ impl<S: Simd> RoundWidth<S> {
 
 impl<S: Simd> RoundBound<'_, S> {
     #[inline(always)]
-    fn at(&self, s: Pack<S, 1>) -> Pack<S, 1> {
+    fn at(&self, s: Pack<S>) -> Pack<S> {
         let later = s * s;
         let one = Pack::splat(s.simd(), 1.0);
         let mut rest = self.across.mul_add(s, self.width) - self.curved * later;

@@ -266,7 +266,7 @@ struct RigidPose<'a> {
     after: &'a RigidState,
 }
 
-type Lane = Pack<Scalar, 1>;
+type Lane = Pack<Scalar>;
 
 impl Pose<Scalar> for RigidPose<'_> {
     fn height(&self) -> Lane {
@@ -277,7 +277,7 @@ impl Pose<Scalar> for RigidPose<'_> {
         (one(f64::NAN), one(f64::NAN))
     }
 
-    fn axis(&self) -> Vectors<Scalar, 1> {
+    fn axis(&self) -> Vectors<Scalar> {
         Vector::new(f64::NAN, f64::NAN, f64::NAN).in_lane()
     }
 
@@ -286,15 +286,15 @@ impl Pose<Scalar> for RigidPose<'_> {
         attitude.parts().map(one)
     }
 
-    fn velocities(&self) -> [Vectors<Scalar, 1>; 2] {
+    fn velocities(&self) -> [Vectors<Scalar>; 2] {
         [self.before, self.after].map(|state| state.velocity.in_lane())
     }
 
-    fn spin_before(&self) -> Vectors<Scalar, 1> {
+    fn spin_before(&self) -> Vectors<Scalar> {
         self.before.attitude.rotate(self.before.spin).in_lane()
     }
 
-    fn spin_after(&self) -> Vectors<Scalar, 1> {
+    fn spin_after(&self) -> Vectors<Scalar> {
         self.after.attitude.rotate(self.after.spin).in_lane()
     }
 }

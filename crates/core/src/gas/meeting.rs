@@ -77,7 +77,7 @@ impl WithSimd for Candidates<'_, '_, '_> {
         of_candidates(self.seed, counters.iter().copied(), LINE, draws);
         let smooth = self.follower.smooth_balls();
         let mut decided = Decided::default();
-        let width = Pack::<S, 1>::WIDTH;
+        let width = Pack::<S>::WIDTH;
         for (some, draws) in self.candidates.chunks(width).zip(draws.chunks(width)) {
             for (lane, (candidate, &(square, turn))) in some.iter().zip(draws).enumerate() {
                 let [i, j] = candidate.pair;

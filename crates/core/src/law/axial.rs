@@ -50,20 +50,20 @@ impl<T: Copy> AxialCompliance<T> {
     }
 }
 
-impl<S: Simd> Compliant<S> for AxialCompliance<Pack<S, 1>> {
+impl<S: Simd> Compliant<S> for AxialCompliance<Pack<S>> {
     #[inline(always)]
-    fn nn(&self) -> Pack<S, 1> {
+    fn nn(&self) -> Pack<S> {
         (self.arm_along * self.arm_along).mul_add(1.0 / self.inertia, 1.0)
     }
 
     #[inline(always)]
-    fn pushed(&self, normal: Pack<S, 1>, velocity: &Vectors<S, 1>) -> [Pack<S, 1>; 2] {
+    fn pushed(&self, normal: Pack<S>, velocity: &Vectors<S>) -> [Pack<S>; 2] {
         [self.nu().mul_add(normal, velocity.x), velocity.y]
     }
 
     /// Solved as in (14).
     #[inline(always)]
-    fn impulse<const SPACE: bool>(&self, change: Vectors<S, 1>) -> Vectors<S, 1> {
+    fn impulse<const SPACE: bool>(&self, change: Vectors<S>) -> Vectors<S> {
         let (n, u, j) = (self.arm_normal, self.arm_along, self.inertia);
         let nn = n.mul_add(n, j);
         let inverse = 1.0 / u.mul_add(u, nn); // 1/(J_xx/m + r_c²)
@@ -80,22 +80,22 @@ impl<S: Simd> Compliant<S> for AxialCompliance<Pack<S, 1>> {
     }
 }
 
-impl<S: Simd> AxialCompliance<Pack<S, 1>> {
+impl<S: Simd> AxialCompliance<Pack<S>> {
     /// K_uu.
     #[inline(always)]
-    pub fn uu(&self) -> Pack<S, 1> {
+    pub fn uu(&self) -> Pack<S> {
         (self.arm_normal * self.arm_normal).mul_add(1.0 / self.inertia, 1.0)
     }
 
     /// K_nu.
     #[inline(always)]
-    pub fn nu(&self) -> Pack<S, 1> {
+    pub fn nu(&self) -> Pack<S> {
         -(self.arm_normal * self.arm_along) * (1.0 / self.inertia)
     }
 
     /// K_nn − K_nu²/K_uu: change of the normal contact velocity per normal impulse while the contact sticks.
     #[inline(always)]
-    pub fn sticking(&self) -> Pack<S, 1> {
+    pub fn sticking(&self) -> Pack<S> {
         let nn = self.arm_normal.mul_add(self.arm_normal, self.inertia);
         self.arm_along.mul_add(self.arm_along, nn) / nn
     }

@@ -55,9 +55,9 @@ impl ImpulseRule for ChatterjeeRuina {
     #[inline(always)]
     fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
-        restitution: Pack<S, 1>,
-    ) -> Response<Pack<S, 1>> {
+        contact: &Contact<Pack<S>, impl Compliant<S> + Sliding<S>>,
+        restitution: Pack<S>,
+    ) -> Response<Pack<S>> {
         let speed = contact.approach_speed();
         let zero = Pack::splat(speed.simd(), 0.0);
 
@@ -84,7 +84,7 @@ impl ImpulseRule for ChatterjeeRuina {
 
 /// √(a² + b²), also where the squares would underflow.
 #[inline(always)]
-fn length<S: Simd>(a: Pack<S, 1>, b: Pack<S, 1>) -> Pack<S, 1> {
+fn length<S: Simd>(a: Pack<S>, b: Pack<S>) -> Pack<S> {
     let (a, b) = (a.abs(), b.abs());
     let (most, least) = (a.max(b), a.min(b));
     let ratio = least / most;

@@ -81,16 +81,12 @@ impl Compliance {
 /// For one contact: **n**, **u** and **w** are its axes z, x and y.
 impl Compliant<Scalar> for Compliance {
     #[inline(always)]
-    fn nn(&self) -> Pack<Scalar, 1> {
+    fn nn(&self) -> Pack<Scalar> {
         one(self.normal())
     }
 
     #[inline(always)]
-    fn pushed(
-        &self,
-        normal: Pack<Scalar, 1>,
-        velocity: &Vectors<Scalar, 1>,
-    ) -> [Pack<Scalar, 1>; 2] {
+    fn pushed(&self, normal: Pack<Scalar>, velocity: &Vectors<Scalar>) -> [Pack<Scalar>; 2] {
         let k = self.entries();
         [
             normal.mul_add(k.xz, velocity.x),
@@ -99,7 +95,7 @@ impl Compliant<Scalar> for Compliance {
     }
 
     #[inline(always)]
-    fn impulse<const SPACE: bool>(&self, change: Vectors<Scalar, 1>) -> Vectors<Scalar, 1> {
+    fn impulse<const SPACE: bool>(&self, change: Vectors<Scalar>) -> Vectors<Scalar> {
         self.impulse(change.lane(0)).in_lane()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::AxialCompliance;
 use crate::math::Vector;
-use crate::simd::{Mask, Pack};
+use crate::simd::{Lanewise, Pack, lanewise};
 use pulp::Simd;
 
 /// A contact. The z axis of its frame is **n**; for a body of revolution x is along **u**, the horizontal direction of the symmetry axis,
@@ -35,7 +35,7 @@ impl<T: Copy> Contact<T> {
     }
 }
 
-impl<S: Simd> Contact<Pack<S, 1>> {
+impl<S: Simd> Contact<Pack<S>> {
     /// The contact in a lane.
     pub(crate) fn lane(&self, lane: usize) -> Contact {
         self.map(|number| number.as_slice()[lane])
@@ -55,9 +55,9 @@ impl<S: Simd> Contact<Pack<S, 1>> {
     /// No contact.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
-        let zero = Pack::splat(simd, 0.0);
+        let zero = Pack::none(simd);
         Self {
-            velocity: Vector::splat(simd, Vector::default()),
+            velocity: Vector::none(simd),
             compliance: AxialCompliance {
                 inertia: 1.0,
                 arm_normal: zero,
@@ -68,33 +68,17 @@ impl<S: Simd> Contact<Pack<S, 1>> {
     }
 }
 
-impl<S: Simd, K> Contact<Pack<S, 1>, K> {
+impl<S: Simd, K> Contact<Pack<S>, K> {
     /// The speed of approach, −v_c^n ≥ 0.
     #[inline(always)]
-    pub fn approach_speed(&self) -> Pack<S, 1> {
+    pub fn approach_speed(&self) -> Pack<S> {
         self.velocity.z.abs()
     }
 }
 
-impl<S: Simd> Response<Pack<S, 1>> {
-    /// The answer to no contact.
-    #[inline(always)]
-    pub fn none(simd: S) -> Self {
-        Self {
-            impulse: Vector::splat(simd, Vector::default()),
-            separation_speed: Pack::splat(simd, 0.0),
-        }
-    }
+lanewise! { Response<Pack<S>> { impulse, separation_speed } }
 
-    /// The same answers, but those of `other` in the lanes of the mask.
-    #[inline(always)]
-    pub(super) fn or(self, mask: Mask<S, 1>, other: &Self) -> Self {
-        Self {
-            impulse: self.impulse.or(mask, other.impulse),
-            separation_speed: mask.select(other.separation_speed, self.separation_speed),
-        }
-    }
-
+impl<S: Simd> Response<Pack<S>> {
     /// Puts an answer into a lane.
     #[inline(always)]
     pub(crate) fn put(&mut self, lane: usize, answer: &Response) {

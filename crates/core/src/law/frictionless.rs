@@ -29,10 +29,10 @@ impl Frictionless {
     /// P_n, where the coefficient is ε_n, from the speed of approach and K_nn.
     #[inline(always)]
     pub(crate) fn impulse<S: Simd>(
-        coefficient: Pack<S, 1>,
-        speed: Pack<S, 1>,
-        compliance: Pack<S, 1>,
-    ) -> Pack<S, 1> {
+        coefficient: Pack<S>,
+        speed: Pack<S>,
+        compliance: Pack<S>,
+    ) -> Pack<S> {
         coefficient.mul_add(speed, speed) / compliance
     }
 }
@@ -41,9 +41,9 @@ impl ImpulseRule for Frictionless {
     #[inline(always)]
     fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
-        normal: Pack<S, 1>,
-    ) -> Response<Pack<S, 1>> {
+        contact: &Contact<Pack<S>, impl Compliant<S> + Sliding<S>>,
+        normal: Pack<S>,
+    ) -> Response<Pack<S>> {
         let speed = contact.approach_speed();
         Response {
             impulse: Vector {

@@ -53,9 +53,9 @@ pub(crate) trait Respond {
     /// `SPACE` no contact velocity has a component along **w**.
     fn respond_all<S: Simd, const SPACE: bool>(
         &self,
-        contacts: &[Contact<Pack<S, 1>>],
-        chances: &[Pack<S, 1>],
-        responses: &mut [Response<Pack<S, 1>>],
+        contacts: &[Contact<Pack<S>>],
+        chances: &[Pack<S>],
+        responses: &mut [Response<Pack<S>>],
     );
 
     /// The law of one's own that is to be asked instead, if this is one.

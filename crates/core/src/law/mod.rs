@@ -38,13 +38,13 @@ use pulp::Simd;
 /// The matrix K of the contact in each lane: that of a body of revolution, or of any body.
 trait Compliant<S: Simd> {
     /// K_nn.
-    fn nn(&self) -> Pack<S, 1>;
+    fn nn(&self) -> Pack<S>;
 
     /// The components of the contact velocity along **u** and **w** after an impulse along **n**.
-    fn pushed(&self, normal: Pack<S, 1>, velocity: &Vectors<S, 1>) -> [Pack<S, 1>; 2];
+    fn pushed(&self, normal: Pack<S>, velocity: &Vectors<S>) -> [Pack<S>; 2];
 
     /// The impulse that changes the contact velocity by `change`: K P = Δ**v**_c (10). Without `SPACE` nothing happens along **w**.
-    fn impulse<const SPACE: bool>(&self, change: Vectors<S, 1>) -> Vectors<S, 1>;
+    fn impulse<const SPACE: bool>(&self, change: Vectors<S>) -> Vectors<S>;
 }
 
 /// A rule, as a law applies it.
@@ -52,9 +52,9 @@ trait ImpulseRule {
     /// The response to a contact in each lane. Without `SPACE` nothing happens along **w**.
     fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
-        normal: Pack<S, 1>,
-    ) -> Response<Pack<S, 1>>;
+        contact: &Contact<Pack<S>, impl Compliant<S> + Sliding<S>>,
+        normal: Pack<S>,
+    ) -> Response<Pack<S>>;
 }
 
 rule::laws! {

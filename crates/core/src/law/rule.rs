@@ -7,7 +7,7 @@ use super::{
 use crate::Error;
 use crate::Fault;
 use crate::math::Vector;
-use crate::simd::{Pack, one};
+use crate::simd::{Lanewise, Pack, one};
 use pulp::{Scalar, Simd, WithSimd};
 
 /// A collision law: a normal coefficient, which may borrow a table and may scatter, and a rule for the impulse.
@@ -40,9 +40,9 @@ macro_rules! laws {
             #[inline(always)]
             fn respond<S: Simd, const SPACE: bool>(
                 &self,
-                contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
-                normal: Pack<S, 1>,
-            ) -> Response<Pack<S, 1>> {
+                contact: &Contact<Pack<S>, impl Compliant<S> + Sliding<S>>,
+                normal: Pack<S>,
+            ) -> Response<Pack<S>> {
                 match self {
                     $(Self::$law(law) => law.respond::<S, SPACE>(contact, normal)),*
                 }
@@ -52,9 +52,9 @@ macro_rules! laws {
             #[inline(always)]
             fn respond_all<S: Simd, const SPACE: bool>(
                 &self,
-                contacts: &[Contact<Pack<S, 1>>],
-                normal: &[Pack<S, 1>],
-                responses: &mut [Response<Pack<S, 1>>],
+                contacts: &[Contact<Pack<S>>],
+                normal: &[Pack<S>],
+                responses: &mut [Response<Pack<S>>],
             ) {
                 match self {
                     $(Self::$law(law) => {
@@ -162,11 +162,7 @@ impl<'a> Law<'a> {
 
     /// ε_n at a speed, where it scatters with uniform numbers in (0, 1).
     #[inline(always)]
-    pub(crate) fn coefficient<S: Simd>(
-        &self,
-        speed: Pack<S, 1>,
-        chances: Option<Pack<S, 1>>,
-    ) -> Pack<S, 1> {
+    pub(crate) fn coefficient<S: Simd>(&self, speed: Pack<S>, chances: Option<Pack<S>>) -> Pack<S> {
         match chances {
             Some(chances) => self.normal.apart(speed, Some((self.deviation, chances))),
             None => self.normal.in_lanes(speed),
@@ -194,9 +190,9 @@ impl Respond for Law<'_> {
     #[inline(always)]
     fn respond_all<S: Simd, const SPACE: bool>(
         &self,
-        contacts: &[Contact<Pack<S, 1>>],
-        chances: &[Pack<S, 1>],
-        responses: &mut [Response<Pack<S, 1>>],
+        contacts: &[Contact<Pack<S>>],
+        chances: &[Pack<S>],
+        responses: &mut [Response<Pack<S>>],
     ) {
         let Some(first) = contacts.first() else {
             return;
@@ -218,9 +214,9 @@ impl Respond for Law<'_> {
 /// A law and the contacts that it is applied to, compiled for each SIMD level.
 struct Choice<'a, 'b, S: Simd, const SPACE: bool> {
     law: &'a Law<'b>,
-    contacts: &'a [Contact<Pack<S, 1>>],
-    chances: &'a [Pack<S, 1>],
-    responses: &'a mut [Response<Pack<S, 1>>],
+    contacts: &'a [Contact<Pack<S>>],
+    chances: &'a [Pack<S>],
+    responses: &'a mut [Response<Pack<S>>],
 }
 
 impl<S: Simd, const SPACE: bool> WithSimd for Choice<'_, '_, S, SPACE> {

@@ -60,9 +60,9 @@ impl ImpulseRule for TangentialRestitution {
     #[inline(always)]
     fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
-        normal: Pack<S, 1>,
-    ) -> Response<Pack<S, 1>> {
+        contact: &Contact<Pack<S>, impl Compliant<S> + Sliding<S>>,
+        normal: Pack<S>,
+    ) -> Response<Pack<S>> {
         let velocity = contact.velocity;
         Response {
             impulse: contact.compliance.impulse::<SPACE>(Vector {
@@ -90,9 +90,9 @@ impl Respond for Steady {
     #[inline(always)]
     fn respond_all<S: Simd, const SPACE: bool>(
         &self,
-        contacts: &[Contact<Pack<S, 1>>],
-        _: &[Pack<S, 1>],
-        responses: &mut [Response<Pack<S, 1>>],
+        contacts: &[Contact<Pack<S>>],
+        _: &[Pack<S>],
+        responses: &mut [Response<Pack<S>>],
     ) {
         for (contact, response) in contacts.iter().zip(responses) {
             let normal = Pack::splat(contact.velocity.z.simd(), self.normal);

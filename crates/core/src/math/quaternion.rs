@@ -20,7 +20,7 @@ pub struct Quaternion<T = f64> {
 }
 
 /// A unit quaternion in each lane.
-pub(crate) type Quaternions<S> = Quaternion<Pack<S, 1>>;
+pub(crate) type Quaternions<S> = Quaternion<Pack<S>>;
 
 impl<T: Copy> Quaternion<T> {
     /// The quaternion (w, x, y, z).

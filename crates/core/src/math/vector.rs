@@ -67,7 +67,7 @@ pub struct Vector<T = f64> {
 }
 
 /// A vector in each lane.
-pub(crate) type Vectors<S, const K: usize> = Vector<Pack<S, K>>;
+pub(crate) type Vectors<S, const K: usize = 1> = Vector<Pack<S, K>>;
 
 impl<T: Copy> Vector<T> {
     /// The vector (x, y, z).
@@ -184,12 +184,12 @@ impl Vector {
 
     /// The only lane of a vector in each.
     #[inline(always)]
-    pub(crate) fn in_lane(self) -> Vectors<Scalar, 1> {
+    pub(crate) fn in_lane(self) -> Vectors<Scalar> {
         Vectors::splat(Scalar::new(), self)
     }
 }
 
-lanewise! { Vectors<S, 1> { x, y, z } }
+lanewise! { Vectors<S> { x, y, z } }
 
 impl<S: Simd, const K: usize> Vectors<S, K> {
     /// The same vector in every lane.

@@ -43,24 +43,24 @@ pub(super) struct Elliptic<S: Simd> {
     /// The axes of the body from the least moment to the largest: axes 1, 2 and 3 in the lanes that are `above`, else axes 3, 2 and 1. Axis 3 is turned round
     /// where they would be left-handed.
     order: [usize; 3],
-    above: Mask<S, 1>,
-    hand: Pack<S, 1>,
-    moments: [Pack<S, 1>; 3],
+    above: Mask<S>,
+    hand: Pack<S>,
+    moments: [Pack<S>; 3],
     /// ω at the beginning.
-    first: [Pack<S, 1>; 3],
+    first: [Pack<S>; 3],
     /// J₁(J₁ − J₃) and J₂(J₂ − J₃): times ω₁² and ω₂² they are together Λ² − 2EJ₃, which is this.
-    across: [Pack<S, 1>; 2],
-    beyond: Pack<S, 1>,
+    across: [Pack<S>; 2],
+    beyond: Pack<S>,
     /// ν = `rate` t + `phase`.
-    rate: Pack<S, 1>,
-    phase: Pack<S, 1>,
+    rate: Pack<S>,
+    phase: Pack<S>,
     /// ½A₂.
-    turn: Pack<S, 1>,
+    turn: Pack<S>,
     /// Ω₁, Ω₂, Ω₃, each with the ratio of theta functions of 0.
-    sizes: [Pack<S, 1>; 3],
+    sizes: [Pack<S>; 3],
     /// The number of terms that are needed: of ϑ₃, of ϑ₁ and the real part of ϑ₁(ν − iη), and of ϑ₂ and the imaginary part.
     terms: usize,
-    squares: [Pack<S, 1>; TERMS],
+    squares: [Pack<S>; TERMS],
     sines: [Pack<S, 2>; TERMS],
     cosines: [Pack<S, 2>; TERMS],
     /// The attitude at the beginning after the rotation back from that at the time 0 in the axes of **Λ**, in axes 1, 2 and 3.
@@ -70,10 +70,10 @@ pub(super) struct Elliptic<S: Simd> {
 /// The nome of a modulus m with its complement m′: A. Abramowitz and I. A. Stegun, *Handbook of Mathematical Functions*, 17.3.21, whose terms beyond these
 /// are less than rounding for ε ≤ [`SERIES`]. Where ε is larger, it is the root of that of the modulus after a step of Landen's, which is q².
 #[inline(always)]
-fn nome<S: Simd>(modulus: Pack<S, 1>, complement: Pack<S, 1>) -> Pack<S, 1> {
+fn nome<S: Simd>(modulus: Pack<S>, complement: Pack<S>) -> Pack<S> {
     // ½(1 − √k′)/(1 + √k′) without the difference.
     #[inline(always)]
-    fn epsilon<S: Simd>(m: Pack<S, 1>, k: Pack<S, 1>, root: Pack<S, 1>) -> Pack<S, 1> {
+    fn epsilon<S: Simd>(m: Pack<S>, k: Pack<S>, root: Pack<S>) -> Pack<S> {
         0.5 * m / ((1.0 + k) * ((1.0 + root) * (1.0 + root)))
     }
     let k = complement.sqrt();
@@ -135,27 +135,27 @@ fn carlson<S: Simd>(mut x: Pack<S, 2>, mut y: Pack<S, 2>, mut z: Pack<S, 2>) -> 
 
 /// Two vectors side by side.
 #[inline(always)]
-fn two<S: Simd>(one: Pack<S, 1>, other: Pack<S, 1>) -> Pack<S, 2> {
+fn two<S: Simd>(one: Pack<S>, other: Pack<S>) -> Pack<S, 2> {
     let mut pair = one.repeat();
     pair.set_part(1, &other);
     pair
 }
 
 #[inline(always)]
-fn both<S: Simd>(pair: Pack<S, 2>) -> [Pack<S, 1>; 2] {
+fn both<S: Simd>(pair: Pack<S, 2>) -> [Pack<S>; 2] {
     [pair.part(0), pair.part(1)]
 }
 
 /// A number that is not negative with the sign of another.
 #[inline(always)]
-fn signed<S: Simd>(x: Pack<S, 1>, like: Pack<S, 1>) -> Pack<S, 1> {
+fn signed<S: Simd>(x: Pack<S>, like: Pack<S>) -> Pack<S> {
     like.bit(63).select(-x, x)
 }
 
 impl<S: Simd> Elliptic<S> {
     /// The rotation from this attitude and this ω, and the lanes in which it can be computed so.
     #[inline(always)]
-    pub fn new(top: &Top, attitude: Quaternions<S>, spin: Vectors<S, 1>) -> (Self, Mask<S, 1>) {
+    pub fn new(top: &Top, attitude: Quaternions<S>, spin: Vectors<S>) -> (Self, Mask<S>) {
         let simd = spin.x.simd();
         let (zero, unit) = (Pack::splat(simd, 0.0), Pack::splat(simd, 1.0));
         let w = spin.parts();
@@ -297,7 +297,7 @@ impl<S: Simd> Elliptic<S> {
 
     /// Attitude and ω at a time.
     #[inline(always)]
-    pub fn at(&self, time: Pack<S, 1>) -> (Quaternions<S>, Vectors<S, 1>) {
+    pub fn at(&self, time: Pack<S>) -> (Quaternions<S>, Vectors<S>) {
         let (sines, cosines) =
             sincos_in_lanes(two(self.rate * time + self.phase, self.turn * time));
         let [[sine, turn_sine], [cosine, turn_cosine]] = [both(sines), both(cosines)];
@@ -313,7 +313,7 @@ impl<S: Simd> Elliptic<S> {
 
     /// A vector along axes 1, 2 and 3 in those of the body.
     #[inline(always)]
-    fn of_body(&self, [x, y, z]: [Pack<S, 1>; 3]) -> Vectors<S, 1> {
+    fn of_body(&self, [x, y, z]: [Pack<S>; 3]) -> Vectors<S> {
         let z = self.hand * z;
         let parts = [self.above.select(x, z), y, self.above.select(z, x)];
         Vectors::new(
@@ -325,7 +325,7 @@ impl<S: Simd> Elliptic<S> {
 
     /// That part along an axis of the body of those from the least moment to the largest; stores by index would have to end before loads of two numbers at once.
     #[inline(always)]
-    fn along(&self, axis: usize, [least, middle, most]: [Pack<S, 1>; 3]) -> Pack<S, 1> {
+    fn along(&self, axis: usize, [least, middle, most]: [Pack<S>; 3]) -> Pack<S> {
         let [low, between, _] = self.order;
         if axis == low {
             least
@@ -338,7 +338,7 @@ impl<S: Simd> Elliptic<S> {
 
     /// ϑ₂, ϑ₁ and ϑ₃ of ν, and the real and the imaginary part of ϑ₁(ν − iη), each but for a factor, from the sine and the cosine of ν.
     #[inline(always)]
-    fn thetas(&self, sine: Pack<S, 1>, cosine: Pack<S, 1>) -> ([Pack<S, 1>; 3], [Pack<S, 1>; 2]) {
+    fn thetas(&self, sine: Pack<S>, cosine: Pack<S>) -> ([Pack<S>; 3], [Pack<S>; 2]) {
         let (s2, c2) = (2.0 * sine * cosine, 1.0 - 2.0 * sine * sine);
         let zero = Pack::splat(sine.simd(), 0.0);
         // The sine and the cosine of (2n + 1)ν, and the cosine of 2nν.
@@ -361,7 +361,7 @@ impl<S: Simd> Elliptic<S> {
     /// flights: Λ² − 2EJ₃, in which all terms have one sign, by the factor, and then the energy by ω₃, which is never 0 and becomes larger by the
     /// part that is returned, too.
     #[inline(always)]
-    fn spin(&self, w: [Pack<S, 1>; 3]) -> ([Pack<S, 1>; 3], Pack<S, 1>) {
+    fn spin(&self, w: [Pack<S>; 3]) -> ([Pack<S>; 3], Pack<S>) {
         let [a, b] = self.across;
         let part = (self.beyond / (a * w[0] * w[0] + b * w[1] * w[1])).sqrt();
         let [x, y, z] = [part * w[0], part * w[1], part * w[2]];
@@ -375,10 +375,10 @@ impl<S: Simd> Elliptic<S> {
     #[inline(always)]
     fn frame(
         &self,
-        w: [Pack<S, 1>; 3],
-        [real, imaginary]: [Pack<S, 1>; 2],
-        turn: (Pack<S, 1>, Pack<S, 1>),
-        more: Pack<S, 1>,
+        w: [Pack<S>; 3],
+        [real, imaginary]: [Pack<S>; 2],
+        turn: (Pack<S>, Pack<S>),
+        more: Pack<S>,
     ) -> Quaternions<S> {
         let [a, b, c] = self.moments;
         let [x, y, z] = [a * w[0], b * w[1], c * w[2]];

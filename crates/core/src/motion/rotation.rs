@@ -26,18 +26,18 @@ pub struct Rotation {
 #[derive(Debug, Clone)]
 pub(crate) struct Rotations<S: Simd> {
     attitude: Quaternions<S>,
-    spin: Vectors<S, 1>,
+    spin: Vectors<S>,
     way: Way<S>,
 }
 
 #[derive(Debug, Clone)]
 enum Way<S: Simd> {
     /// About ω: its half, and the direction.
-    Steady(Pack<S, 1>, Vectors<S, 1>),
+    Steady(Pack<S>, Vectors<S>),
     /// Half the rate and the direction of **Λ**/J, then λ about an axis.
-    Precession((Pack<S, 1>, Vectors<S, 1>), Pack<S, 1>, usize),
+    Precession((Pack<S>, Vectors<S>), Pack<S>, usize),
     /// But where the body does not turn.
-    Elliptic(Elliptic<S>, Mask<S, 1>),
+    Elliptic(Elliptic<S>, Mask<S>),
 }
 
 impl Rotation {
@@ -119,7 +119,7 @@ impl<S: Simd> Rotations<S> {
 
     /// The rotations with these attitudes and these ω, and the lanes in which they are known for all times.
     #[inline(always)]
-    pub fn new(top: &Top, attitude: Quaternions<S>, spin: Vectors<S, 1>) -> (Self, Mask<S, 1>) {
+    pub fn new(top: &Top, attitude: Quaternions<S>, spin: Vectors<S>) -> (Self, Mask<S>) {
         let rests = spin.dot(spin).eq(0.0);
         let mut serves = Mask::splat(rests.simd(), true);
         let way = match top.symmetry {
@@ -158,7 +158,7 @@ impl<S: Simd> Rotations<S> {
 
     /// The attitudes, and ω in the axes of the body, at a time.
     #[inline(always)]
-    pub fn at(&self, time: Pack<S, 1>) -> (Quaternions<S>, Vectors<S, 1>) {
+    pub fn at(&self, time: Pack<S>) -> (Quaternions<S>, Vectors<S>) {
         match &self.way {
             Way::Steady(half, direction) => {
                 let turn = about(*direction, *half * time);
@@ -185,7 +185,7 @@ impl<S: Simd> Rotations<S> {
 
     /// ω at the beginning turned back about the axis of symmetry, by the sine and the cosine of half the angle, with the length that it had.
     #[inline(always)]
-    fn back(&self, axis: usize, sine: Pack<S, 1>, cosine: Pack<S, 1>) -> Vectors<S, 1> {
+    fn back(&self, axis: usize, sine: Pack<S>, cosine: Pack<S>) -> Vectors<S> {
         let mut spin = self.spin.parts();
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let [a, b] = [spin[i], spin[j]];
@@ -218,14 +218,14 @@ const ANY: Vector = Vector::new(0.1, 0.1, 0.1);
 
 /// A square, and what it has lost by rounding.
 #[inline(always)]
-fn square<S: Simd>(v: Pack<S, 1>) -> (Pack<S, 1>, Pack<S, 1>) {
+fn square<S: Simd>(v: Pack<S>) -> (Pack<S>, Pack<S>) {
     let square = v * v;
     (square, v.mul_add(v, -square))
 }
 
 /// Half the length of a vector, and its direction; none of no vector.
 #[inline(always)]
-fn half_and_direction<S: Simd>(v: Vectors<S, 1>) -> (Pack<S, 1>, Vectors<S, 1>) {
+fn half_and_direction<S: Simd>(v: Vectors<S>) -> (Pack<S>, Vectors<S>) {
     let length = (v.x * v.x + v.y * v.y + v.z * v.z).sqrt();
     let divisor = length.le(0.0).select(1.0, length);
     (0.5 * length, v / divisor)
@@ -233,7 +233,7 @@ fn half_and_direction<S: Simd>(v: Vectors<S, 1>) -> (Pack<S, 1>, Vectors<S, 1>) 
 
 /// The rotation about a direction by twice this angle.
 #[inline(always)]
-fn about<S: Simd>(direction: Vectors<S, 1>, half: Pack<S, 1>) -> Quaternions<S> {
+fn about<S: Simd>(direction: Vectors<S>, half: Pack<S>) -> Quaternions<S> {
     let (sine, cosine) = sincos_in_lanes(half);
     Quaternions::of(cosine, direction * sine)
 }

@@ -68,7 +68,7 @@ impl Top {
 
     /// [`SpinBounds::whole`] in each lane.
     #[inline(always)]
-    pub(crate) fn largest_acceleration<S: Simd>(&self, spin: Vectors<S, 1>) -> Pack<S, 1> {
+    pub(crate) fn largest_acceleration<S: Simd>(&self, spin: Vectors<S>) -> Pack<S> {
         largest_acceleration(self.asymmetry, self.largest_spin(spin))
     }
 

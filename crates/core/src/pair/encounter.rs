@@ -366,11 +366,7 @@ impl Following<'_, '_> {
 
 /// The times between which a point at **y** with the velocity **u** is within reach of the origin; both are 0 where it never is from now on.
 #[inline(always)]
-pub(super) fn within<S: Simd>(
-    y: Vectors<S, 1>,
-    u: Vectors<S, 1>,
-    reach: f64,
-) -> (Pack<S, 1>, Pack<S, 1>) {
+pub(super) fn within<S: Simd>(y: Vectors<S>, u: Vectors<S>, reach: f64) -> (Pack<S>, Pack<S>) {
     let (square, along) = (u.dot(u), y.dot(u));
     let zero = Pack::splat(square.simd(), 0.0);
     let beyond = y.dot(y) - reach * reach;

@@ -50,10 +50,10 @@ impl<'a, 'b> Follower<'a, 'b> {
     #[inline(always)]
     pub fn touch<S: Simd>(
         &self,
-        [one, two]: [Vectors<S, 1>; 2],
-        normal: Vectors<S, 1>,
+        [one, two]: [Vectors<S>; 2],
+        normal: Vectors<S>,
         (seed, numbers): (u64, &[u64]),
-    ) -> [Vectors<S, 1>; 2] {
+    ) -> [Vectors<S>; 2] {
         let (first, second) = (self.bodies[0].inverse_mass, self.bodies[1].inverse_mass);
         let speed = normal.dot(two - one).max(0.0);
         let mut chances = None;

@@ -199,11 +199,11 @@ impl Encounters<'_> {
 /// normal to **u**, from which the azimuth counts, of which sine and cosine are given.
 #[inline(always)]
 pub(crate) fn approach<S: Simd>(
-    u: Vectors<S, 1>,
-    across: Vectors<S, 1>,
-    b: Pack<S, 1>,
-    (s, c): (Pack<S, 1>, Pack<S, 1>),
-) -> Vectors<S, 1> {
+    u: Vectors<S>,
+    across: Vectors<S>,
+    b: Pack<S>,
+    (s, c): (Pack<S>, Pack<S>),
+) -> Vectors<S> {
     let second = u.cross(across);
     let back = (1.0 - b * b).max(0.0).sqrt();
     let aside = across * (b * c) + second * (b * s);

@@ -8,29 +8,29 @@ pub(crate) trait Lanewise<S: Simd>: Copy {
     /// 0 and false in every lane: before anything is known.
     fn none(simd: S) -> Self;
     /// The same values, but those of `other` in the lanes of the mask.
-    fn or(self, mask: Mask<S, 1>, other: Self) -> Self;
+    fn or(self, mask: Mask<S>, other: Self) -> Self;
 }
 
-impl<S: Simd> Lanewise<S> for Pack<S, 1> {
+impl<S: Simd> Lanewise<S> for Pack<S> {
     #[inline(always)]
     fn none(simd: S) -> Self {
         Self::splat(simd, 0.0)
     }
 
     #[inline(always)]
-    fn or(self, mask: Mask<S, 1>, other: Self) -> Self {
+    fn or(self, mask: Mask<S>, other: Self) -> Self {
         mask.select(other, self)
     }
 }
 
-impl<S: Simd> Lanewise<S> for Mask<S, 1> {
+impl<S: Simd> Lanewise<S> for Mask<S> {
     #[inline(always)]
     fn none(simd: S) -> Self {
         Self::splat(simd, false)
     }
 
     #[inline(always)]
-    fn or(self, mask: Mask<S, 1>, other: Self) -> Self {
+    fn or(self, mask: Mask<S>, other: Self) -> Self {
         (other & mask) | (self & !mask)
     }
 }
@@ -45,7 +45,7 @@ macro_rules! lanewise {
             }
 
             #[inline(always)]
-            fn or(self, mask: crate::simd::Mask<S, 1>, other: Self) -> Self {
+            fn or(self, mask: crate::simd::Mask<S>, other: Self) -> Self {
                 Self { $($field: crate::simd::Lanewise::or(self.$field, mask, other.$field)),+ }
             }
         }

@@ -18,6 +18,6 @@ use pulp::Scalar;
 
 /// A pack of one lane.
 #[inline(always)]
-pub(crate) fn one(x: f64) -> Pack<Scalar, 1> {
+pub(crate) fn one(x: f64) -> Pack<Scalar> {
     Pack::splat(Scalar::new(), x)
 }

@@ -13,20 +13,20 @@ pub(crate) const LANES: usize = 8;
 
 /// K vectors of doubles.
 #[derive(Debug, Clone, Copy)]
-pub struct Pack<S: Simd, const K: usize> {
+pub struct Pack<S: Simd, const K: usize = 1> {
     simd: S,
     vectors: [S::f64s; K],
 }
 
 /// A truth value for each lane of a [`Pack`].
 #[derive(Debug, Clone, Copy)]
-pub struct Mask<S: Simd, const K: usize> {
+pub struct Mask<S: Simd, const K: usize = 1> {
     simd: S,
     masks: [S::m64s; K],
 }
 
 /// An operand of a [`Pack`]: another pack, or one number for all lanes.
-pub trait Operand<S: Simd, const K: usize> {
+pub trait Operand<S: Simd, const K: usize = 1> {
     /// The operand in every lane.
     fn in_lanes(self, simd: S) -> Pack<S, K>;
 }
@@ -212,7 +212,7 @@ impl<S: Simd, const K: usize> Pack<S, K> {
     }
 }
 
-impl<S: Simd> Pack<S, 1> {
+impl<S: Simd> Pack<S> {
     /// The same vector N times.
     #[inline(always)]
     pub fn repeat<const N: usize>(self) -> Pack<S, N> {
@@ -223,7 +223,7 @@ impl<S: Simd> Pack<S, 1> {
     }
 }
 
-impl<S: Simd> Mask<S, 1> {
+impl<S: Simd> Mask<S> {
     /// The same truth values N times.
     #[inline(always)]
     pub fn repeat<const N: usize>(self) -> Mask<S, N> {

@@ -85,8 +85,8 @@ impl Axis {
     #[inline(always)]
     pub(super) fn locate<S: Simd, const N: usize, const EVEN: bool>(
         axes: [&Self; N],
-        x: [Pack<S, 1>; N],
-    ) -> [Pack<S, 1>; N] {
+        x: [Pack<S>; N],
+    ) -> [Pack<S>; N] {
         if EVEN {
             return Self::locate_even(axes, x);
         }
@@ -103,7 +103,7 @@ impl Axis {
     }
 
     #[inline(always)]
-    fn locate_one<S: Simd>(&self, x: Pack<S, 1>) -> Pack<S, 1> {
+    fn locate_one<S: Simd>(&self, x: Pack<S>) -> Pack<S> {
         match &self.cells {
             Some(cells) => cells.locate(x),
             None => Self::locate_even([self], [x])[0],
@@ -112,10 +112,7 @@ impl Axis {
 
     /// The same for bins of equal width: a single test for all axes decides whether any number is near an edge.
     #[inline(always)]
-    fn locate_even<S: Simd, const N: usize>(
-        axes: [&Self; N],
-        x: [Pack<S, 1>; N],
-    ) -> [Pack<S, 1>; N] {
+    fn locate_even<S: Simd, const N: usize>(axes: [&Self; N], x: [Pack<S>; N]) -> [Pack<S>; N] {
         let mut places = x;
         let mut bins = x;
         let mut most = Pack::splat(x[0].simd(), 0.0);
@@ -134,7 +131,7 @@ impl Axis {
 
     /// Position of `x` in bin widths; integers are the centres of the bins.
     #[inline(always)]
-    fn place<S: Simd>(&self, x: Pack<S, 1>) -> Pack<S, 1> {
+    fn place<S: Simd>(&self, x: Pack<S>) -> Pack<S> {
         (x - self.low)
             .mul_add(self.density, 0.5)
             .max(0.0)
@@ -143,7 +140,7 @@ impl Axis {
 
     /// The bins, with the lanes that are near an edge decided by comparison with the edge.
     #[inline(always)]
-    fn decided<S: Simd>(&self, x: Pack<S, 1>, place: Pack<S, 1>, bin: Pack<S, 1>) -> Pack<S, 1> {
+    fn decided<S: Simd>(&self, x: Pack<S>, place: Pack<S>, bin: Pack<S>) -> Pack<S> {
         // Lanes are accessed one by one only here, which is rarely reached.
         let far = off(place, bin).lt(0.5 - NEAR);
         let (x, place) = (far.select(0.0, x), far.select(0.0, place));
@@ -169,6 +166,6 @@ impl Axis {
 
 /// Distance of a position from the centre of its bin.
 #[inline(always)]
-fn off<S: Simd>(place: Pack<S, 1>, bin: Pack<S, 1>) -> Pack<S, 1> {
+fn off<S: Simd>(place: Pack<S>, bin: Pack<S>) -> Pack<S> {
     (place - (bin - ROUND)).abs()
 }

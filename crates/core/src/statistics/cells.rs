@@ -51,7 +51,7 @@ enum Scale {
 impl Scale {
     /// The cells of numbers, from 0 to `last`; any for NaN.
     #[inline(always)]
-    fn cells<S: Simd>(self, x: Pack<S, 1>, last: f64) -> Pack<S, 1> {
+    fn cells<S: Simd>(self, x: Pack<S>, last: f64) -> Pack<S> {
         match self {
             Self::Linear { low, density } => ((x - low) * density).max(0.0).min(last) + ROUND,
             Self::Octaves {
@@ -172,7 +172,7 @@ impl Cells {
 
     /// Numbers of the bins, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above; any for NaN.
     #[inline(always)]
-    pub fn locate<S: Simd>(&self, x: Pack<S, 1>) -> Pack<S, 1> {
+    pub fn locate<S: Simd>(&self, x: Pack<S>) -> Pack<S> {
         let Self {
             scale,
             cells,
@@ -183,7 +183,7 @@ impl Cells {
         let x = x.min(f64::MAX);
         let places = scale.cells(x, *last);
         let (mut edge, mut number) = (x, x);
-        for lane in 0..Pack::<S, 1>::WIDTH {
+        for lane in 0..Pack::<S>::WIDTH {
             let cell = cells[index(places.as_slice()[lane], cells.len())];
             edge.as_mut_slice()[lane] = cell.edge;
             number.as_mut_slice()[lane] = cell.number;

@@ -35,11 +35,11 @@ pub(super) type Half = [f64; 4];
 /// created.
 #[inline(always)]
 pub(super) fn words<S: Simd>(
-    offset: Pack<S, 1>,
-    quanta: Pack<S, 1>,
-    fraction: Pack<S, 1>,
-    gaining: Mask<S, 1>,
-) -> [[Pack<S, 1>; 4]; 2] {
+    offset: Pack<S>,
+    quanta: Pack<S>,
+    fraction: Pack<S>,
+    gaining: Mask<S>,
+) -> [[Pack<S>; 4]; 2] {
     let first = offset.mul_add(quanta, ROUND);
     let q = first - ROUND;
     let square = q * q;

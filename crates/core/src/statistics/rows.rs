@@ -16,7 +16,7 @@ pub const PULLS: f64 = 1e-12;
 
 /// The lanes with an impact in which the plane pulls at the body: P_n < 0.
 #[inline(always)]
-pub(super) fn pulling<S: Simd>(velocity: Pack<S, 1>, restitution: Pack<S, 1>) -> Mask<S, 1> {
+pub(super) fn pulling<S: Simd>(velocity: Pack<S>, restitution: Pack<S>) -> Mask<S> {
     let rebound = velocity * restitution;
     (velocity + rebound).lt((velocity.abs() + rebound.abs()) * -PULLS)
 }

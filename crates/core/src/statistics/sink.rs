@@ -107,14 +107,14 @@ impl Recently {
 
 /// Transposes four packs into one record of four numbers for each lane.
 #[inline(always)]
-fn put<S: Simd>(queue: &mut [[f64; 4]], packs: [Pack<S, 1>; 4]) {
+fn put<S: Simd>(queue: &mut [[f64; 4]], packs: [Pack<S>; 4]) {
     let records = Pack::records(packs);
     queue.copy_from_slice(pulp::bytemuck::cast_slice(&records));
 }
 
 /// The last sites, which are never read, plus [`ROUND`]: one for each lane, so that none waits for another.
 #[inline(always)]
-fn nowhere<S: Simd, T>(simd: S, places: &[T]) -> Pack<S, 1> {
+fn nowhere<S: Simd, T>(simd: S, places: &[T]) -> Pack<S> {
     let mut sites = Pack::splat(simd, last(places));
     for (lane, site) in sites.as_mut_slice().iter_mut().enumerate() {
         *site -= (lane % LANES) as f64;
@@ -129,7 +129,7 @@ fn last<T>(places: &[T]) -> f64 {
 
 /// Numbers of the sites in `column`, to which [`ROUND`] was added, of row number `start`.
 #[inline(always)]
-fn sites<S: Simd>(axis: &Axis, start: Pack<S, 1>, column: Pack<S, 1>) -> Pack<S, 1> {
+fn sites<S: Simd>(axis: &Axis, start: Pack<S>, column: Pack<S>) -> Pack<S> {
     start.mul_add(axis.stride, column)
 }
 
@@ -138,11 +138,11 @@ fn sites<S: Simd>(axis: &Axis, start: Pack<S, 1>, column: Pack<S, 1>) -> Pack<S,
 #[inline(always)]
 fn all_sites<S: Simd>(
     (axis, counts): (&Axis, &[u32]),
-    start: Pack<S, 1>,
-    column: Pack<S, 1>,
-    defined: Mask<S, 1>,
-    active: Mask<S, 1>,
-) -> Pack<S, 1> {
+    start: Pack<S>,
+    column: Pack<S>,
+    defined: Mask<S>,
+    active: Mask<S>,
+) -> Pack<S> {
     let column = defined.select(column, axis.beyond + ROUND);
     active.select(sites(axis, start, column), nowhere(start.simd(), counts))
 }
@@ -288,7 +288,7 @@ impl<const EVEN: bool, const MOMENTS: bool> ImpactSink for HistogramSink<'_, EVE
 
     #[inline(always)]
     fn impact<S: Simd, P: Pose<S>>(&mut self, group: usize, impact: &Impact<S, P>) {
-        let width = Pack::<S, 1>::WIDTH;
+        let width = Pack::<S>::WIDTH;
         if self.recently.add(width) {
             self.empty();
         }

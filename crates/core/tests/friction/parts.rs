@@ -108,7 +108,7 @@ impl SlipState {
     }
 }
 
-fn value(x: Pack<Scalar, 1>) -> f64 {
+fn value(x: Pack<Scalar>) -> f64 {
     x.as_slice()[0]
 }
 
@@ -339,7 +339,7 @@ mod series {
         Polynomial(terms.map(one))
     }
 
-    fn value(x: Pack<Scalar, 1>) -> f64 {
+    fn value(x: Pack<Scalar>) -> f64 {
         x.as_slice()[0]
     }
 

@@ -11,24 +11,24 @@ use pulp::Simd;
 #[derive(Clone, Copy)]
 pub(crate) struct LastContact<S: Simd> {
     /// +1 or −1: sphere 1 or 2 is on the plane; 0: no part of the body is.
-    pub sphere: Pack<S, 1>,
+    pub sphere: Pack<S>,
     /// The normal speed at which the point of contact leaves the plane.
-    pub speed: Pack<S, 1>,
+    pub speed: Pack<S>,
 }
 
 /// Height, axis and their time derivatives at one time of the flight.
 #[derive(Clone, Copy)]
 pub(super) struct Instant<S: Simd> {
-    time: Pack<S, 1>,
-    height: Pack<S, 1>,
-    vz: Pack<S, 1>,
-    axis_motion: AxisMotion<S, 1>,
+    time: Pack<S>,
+    height: Pack<S>,
+    vz: Pack<S>,
+    axis_motion: AxisMotion<S>,
 }
 
 impl<S: Simd> Instant<S> {
     /// The gap f under a part of the hull (2), negative where they overlap, and f′.
     #[inline(always)]
-    pub(super) fn opening(&self, part: &HullPart<S>, hull: &impl Hull) -> (Pack<S, 1>, Pack<S, 1>) {
+    pub(super) fn opening(&self, part: &HullPart<S>, hull: &impl Hull) -> (Pack<S>, Pack<S>) {
         let AxisMotion { cos_tilt, rate, .. } = self.axis_motion;
         (
             hull.gap(part, cos_tilt, self.height), // (2)
@@ -42,11 +42,11 @@ impl<S: Simd> Instant<S> {
 pub(crate) struct Gap<S: Simd> {
     pub part: HullPart<S>,
     /// f ≥ 0; an overlap, which is rounding, counts as 0.
-    pub width: Pack<S, 1>,
+    pub width: Pack<S>,
     /// f′.
-    pub rate: Pack<S, 1>,
+    pub rate: Pack<S>,
     /// [`closing_speed`].
-    pub closing: Pack<S, 1>,
+    pub closing: Pack<S>,
 }
 
 /// The evaluation of a pass of the search: the gap that may close first.
@@ -57,7 +57,7 @@ pub(crate) struct GapEvaluation<S: Simd> {
     /// The gap that may close first.
     pub gap: Gap<S>,
     /// The lanes that do not land before the angle turned through exceeds [`RANGE`].
-    pub never: Mask<S, 1>,
+    pub never: Mask<S>,
 }
 
 lanewise! {
@@ -74,12 +74,12 @@ pub(crate) struct Search<S: Simd, F> {
     /// The contact from which the flight starts.
     pub last_contact: LastContact<S>,
     /// S, the bound on the contribution of rotation to f″: (L/2)AΩ² for a dumbbell.
-    pub rotation_bound: Pack<S, 1>,
+    pub rotation_bound: Pack<S>,
     /// M, the bound on −f″.
-    pub curvature_bound: Pack<S, 1>,
+    pub curvature_bound: Pack<S>,
     /// From `up` to `down` the centre of mass is higher than the hull can reach.
-    up: Pack<S, 1>,
-    down: Pack<S, 1>,
+    up: Pack<S>,
+    down: Pack<S>,
 }
 
 impl<S: Simd, F: Flight<S>> Search<S, F> {
@@ -151,7 +151,7 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
     /// The speed at which the other part approaches is taken relative to the part at rest: what rounding makes of the speed of that
     /// one is in both, and is all that there is where the two parts touch at the same place.
     #[inline(always)]
-    pub fn rests<H: Hull>(&self, hull: &H) -> Mask<S, 1> {
+    pub fn rests<H: Hull>(&self, hull: &H) -> Mask<S> {
         let instant = self.beginning();
         let on = self.last_contact.sphere;
         let part = hull.part(!on.lt(0.0));
@@ -167,7 +167,7 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
 
     /// The time of the first evaluation, certified for both parts, of which one may be leaving the plane.
     #[inline(always)]
-    pub fn first_evaluation<H: Hull>(&self, hull: &H) -> Pack<S, 1> {
+    pub fn first_evaluation<H: Hull>(&self, hull: &H) -> Pack<S> {
         let instant = self.beginning();
         let on = self.last_contact.sphere;
         let step = if on.eq(0.0).any() {
@@ -195,7 +195,7 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
 
     /// The angle that the body has turned through at `time`, Ωt.
     #[inline(always)]
-    pub fn angle(&self, time: Pack<S, 1>) -> Pack<S, 1> {
+    pub fn angle(&self, time: Pack<S>) -> Pack<S> {
         self.flight.rate() * time
     }
 
@@ -203,8 +203,8 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
     #[inline(always)]
     pub fn evaluate<H: Hull>(
         &self,
-        time: Pack<S, 1>,
-        turned: (Pack<S, 1>, Pack<S, 1>),
+        time: Pack<S>,
+        turned: (Pack<S>, Pack<S>),
         hull: &H,
     ) -> GapEvaluation<S> {
         let never = !self.angle(time).abs().le(RANGE);
@@ -255,7 +255,7 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
 
     /// Height, axis and their derivatives at `time`, with this attitude.
     #[inline(always)]
-    pub(super) fn instant(&self, time: Pack<S, 1>, attitude: Attitude<S>) -> Instant<S> {
+    pub(super) fn instant(&self, time: Pack<S>, attitude: Attitude<S>) -> Instant<S> {
         Instant {
             time,
             height: self.flight.height_at(time),
@@ -305,13 +305,13 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
 
     /// The time before which there is no contact of a part with this gap.
     #[inline(always)]
-    pub fn certified(&self, gap: &Gap<S>) -> Pack<S, 1> {
+    pub fn certified(&self, gap: &Gap<S>) -> Pack<S> {
         first_zero(gap.width, gap.rate, gap.closing, self.curvature_bound)
     }
 
     /// The given time, or, if the centre of mass is then higher than the hull can reach, the time at which it comes back down.
     #[inline(always)]
-    pub fn skip(&self, time: Pack<S, 1>) -> Pack<S, 1> {
+    pub fn skip(&self, time: Pack<S>) -> Pack<S> {
         self.up.le(time).select(time.max(self.down), time)
     }
 }

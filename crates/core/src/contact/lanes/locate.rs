@@ -13,21 +13,21 @@ use pulp::Simd;
 #[repr(align(64))]
 pub(crate) struct Steps<S: Simd> {
     /// The certified step.
-    certified: Pack<S, 1>,
+    certified: Pack<S>,
     /// The step to where the contact is looked for next: at first to the zero of an expansion.
-    expanded: Pack<S, 1>,
+    expanded: Pack<S>,
 }
 
 /// The gap that remains at the zero of an expansion.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Prediction<S: Simd> {
-    time: Pack<S, 1>,
+    time: Pack<S>,
     attitude: Attitude<S>,
-    width: Pack<S, 1>,
+    width: Pack<S>,
     /// f′ and f″.
-    rate: Pack<S, 1>,
-    curvature: Pack<S, 1>,
+    rate: Pack<S>,
+    curvature: Pack<S>,
 }
 
 /// The result of a pass of the search.
@@ -35,10 +35,10 @@ pub(crate) struct Prediction<S: Simd> {
 #[repr(align(64))]
 pub(crate) struct LocatedContact<S: Simd> {
     /// Time and attitude of the contact.
-    pub time: Pack<S, 1>,
+    pub time: Pack<S>,
     pub attitude: Attitude<S>,
     /// The lanes in which the contact is located, or that never land.
-    pub done: Mask<S, 1>,
+    pub done: Mask<S>,
 }
 
 lanewise! {
@@ -51,7 +51,7 @@ impl<S: Simd> Steps<S> {
     /// The step to the contact that was found from `time`, to predict it again from there; that of the lanes that are done stays as it
     /// is, so that they repeat the same result.
     #[inline(always)]
-    pub fn on_to(self, located: &LocatedContact<S>, time: Pack<S, 1>) -> Self {
+    pub fn on_to(self, located: &LocatedContact<S>, time: Pack<S>) -> Self {
         Self {
             expanded: located.done.select(self.expanded, located.time - time),
             ..self
@@ -74,7 +74,7 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
     #[inline(always)]
     pub fn predict(
         &self,
-        time: Pack<S, 1>,
+        time: Pack<S>,
         evaluation: &GapEvaluation<S>,
         steps: &Steps<S>,
         hull: &impl Hull,
@@ -139,10 +139,10 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
     #[inline(always)]
     pub fn accept_grazing(
         &self,
-        time: Pack<S, 1>,
+        time: Pack<S>,
         evaluation: &GapEvaluation<S>,
         steps: &Steps<S>,
-        clear: Mask<S, 1>,
+        clear: Mask<S>,
         located: &mut LocatedContact<S>,
     ) {
         let step = steps.certified;
@@ -166,7 +166,7 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
 
     /// The time up to which a pass that evaluated the gap at `time` rules out a contact.
     #[inline(always)]
-    pub fn certain(&self, time: Pack<S, 1>, steps: &Steps<S>) -> Pack<S, 1> {
+    pub fn certain(&self, time: Pack<S>, steps: &Steps<S>) -> Pack<S> {
         // The time must increase by at least one rounding unit, however short the step.
         self.skip(time + steps.certified.max(f64::EPSILON * time))
     }
@@ -176,12 +176,12 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
     #[inline(always)]
     pub fn aim(
         &self,
-        certain: Pack<S, 1>,
+        certain: Pack<S>,
         steps: &Steps<S>,
         prediction: &Prediction<S>,
         located: &LocatedContact<S>,
         hull: &impl Hull,
-    ) -> Pack<S, 1> {
+    ) -> Pack<S> {
         let rate = prediction.rate;
         let beyond = mean_rate_before(located.time - certain, rate, self.curvature_bound);
         // So near to the contact a pass ends the search, and the gap is larger than its rounding error.
@@ -196,11 +196,11 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
     #[inline(always)]
     pub fn is_clear<H: Hull>(
         &self,
-        certain: Pack<S, 1>,
-        time: Pack<S, 1>,
+        certain: Pack<S>,
+        time: Pack<S>,
         evaluation: &GapEvaluation<S>,
         hull: &H,
-    ) -> Mask<S, 1> {
+    ) -> Mask<S> {
         let (since, bound) = (time - certain, self.curvature_bound);
         let (width, rate) = (evaluation.gap.width, evaluation.gap.rate);
         let mut least = before(since, width, rate, bound).min(width);
@@ -216,12 +216,7 @@ impl<S: Simd, F: Flight<S>> Search<S, F> {
 
     /// The step to the zero of the fourth-order expansion of the gap, found by a step of third order from the end of `step`.
     #[inline(always)]
-    fn expanded(
-        &self,
-        evaluation: &GapEvaluation<S>,
-        step: Pack<S, 1>,
-        hull: &impl Hull,
-    ) -> Pack<S, 1> {
+    fn expanded(&self, evaluation: &GapEvaluation<S>, step: Pack<S>, hull: &impl Hull) -> Pack<S> {
         let axis_motion = self.flight.axis_motion(evaluation.attitude);
         let [second, third, fourth] = hull.derivatives(&evaluation.gap.part, &axis_motion); // f″ without gravity, f‴, f⁗
         let slack = second + self.rotation_bound; // f″ + M, which the lower bound neglects

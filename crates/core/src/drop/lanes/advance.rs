@@ -12,6 +12,7 @@ use super::particles::{Lost, Release};
 use super::passes::{SearchOn, pass};
 use crate::law::{Law, Respond, Response};
 use crate::shape::{Body, Hull, Surface, with_hull};
+use crate::simd::Lanewise;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 use std::slice::{from_mut, from_ref};

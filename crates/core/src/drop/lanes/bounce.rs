@@ -28,7 +28,7 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
 ) -> Result<(), Lost> {
     let mut groups = cycle.groups::<N>(simd);
     let mut collisions = Collisions::none(simd);
-    let width = Pack::<S, 1>::WIDTH;
+    let width = Pack::<S>::WIDTH;
     let count = particles.len().div_ceil(width).min(N);
     // Of a slice that it knows to be short the compiler would write out every stage for each group, which then do not fit into the
     // instruction cache.
@@ -146,7 +146,7 @@ mod tests {
     impl ImpactSink for Cancelling<'_> {
         fn impact<S: Simd, P: Pose<S>>(&mut self, group: usize, impact: &Impact<S, P>) {
             impact.active.each(|lane| {
-                let place = group * Pack::<S, 1>::WIDTH + lane;
+                let place = group * Pack::<S>::WIDTH + lane;
                 assert!(!self.waits[place], "an impact is lost");
                 self.waits[place] = true;
                 self.impacts += 1;

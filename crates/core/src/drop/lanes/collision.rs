@@ -39,8 +39,8 @@ impl Dimension for Spatial {
 /// The sphere that touches like the hull at the contact: its lever s and its radius ϱ.
 #[derive(Clone, Copy)]
 pub(crate) struct ContactPoint<S: Simd> {
-    pub lever: Pack<S, 1>,
-    pub radius: Pack<S, 1>,
+    pub lever: Pack<S>,
+    pub radius: Pack<S>,
 }
 
 lanewise! { ContactPoint<S> { lever, radius } }
@@ -48,7 +48,7 @@ lanewise! { ContactPoint<S> { lever, radius } }
 impl<S: Simd> ContactPoint<S> {
     /// That of a part of a hull at this e_z.
     #[inline(always)]
-    pub fn of(hull: &impl Hull, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Self {
+    pub fn of(hull: &impl Hull, part: &HullPart<S>, cos_tilt: Pack<S>) -> Self {
         Self {
             lever: hull.lever(part, cos_tilt),
             radius: hull.radius(part, cos_tilt),
@@ -60,9 +60,9 @@ impl<S: Simd> ContactPoint<S> {
 /// and what the law answers.
 pub(crate) struct Collisions<S: Simd> {
     pub points: [ContactPoint<S>; GROUPS],
-    pub contacts: [Contact<Pack<S, 1>>; GROUPS],
-    pub chances: [Pack<S, 1>; GROUPS],
-    pub responses: [Response<Pack<S, 1>>; GROUPS],
+    pub contacts: [Contact<Pack<S>>; GROUPS],
+    pub chances: [Pack<S>; GROUPS],
+    pub responses: [Response<Pack<S>>; GROUPS],
 }
 
 impl<S: Simd> Collisions<S> {
@@ -80,17 +80,17 @@ impl<S: Simd> Collisions<S> {
 /// A state to which an impact can be applied.
 pub(crate) trait Collide<S: Simd>: SymmetricState<S> {
     /// The contact of the part of the hull that touches.
-    fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>>;
+    fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S>>;
 
     /// **u** along x and y.
-    fn along(&self, point: ContactPoint<S>) -> [Pack<S, 1>; 2];
+    fn along(&self, point: ContactPoint<S>) -> [Pack<S>; 2];
 
     /// The motion after the impact.
     fn after(
         &self,
         body: &Body,
         point: ContactPoint<S>,
-        response: &Response<Pack<S, 1>>,
+        response: &Response<Pack<S>>,
     ) -> Self::Motion;
 }
 
@@ -99,13 +99,13 @@ pub(crate) trait Collide<S: Simd>: SymmetricState<S> {
 fn planar_arm<S: Simd>(
     state: &PlanarState<S>,
     ContactPoint { lever, radius }: ContactPoint<S>,
-) -> [Pack<S, 1>; 2] {
+) -> [Pack<S>; 2] {
     [state.sine * lever, state.cosine.mul_add(lever, -radius)]
 }
 
 impl<S: Simd> Collide<S> for PlanarState<S> {
     #[inline(always)]
-    fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>> {
+    fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S>> {
         let PlanarMotion { vx, vz, spin } = self.motion;
         let [arm_x, arm_z] = planar_arm(self, point);
         let zero = Pack::splat(vx.simd(), 0.0);
@@ -124,7 +124,7 @@ impl<S: Simd> Collide<S> for PlanarState<S> {
         }
     }
 
-    fn along(&self, _: ContactPoint<S>) -> [Pack<S, 1>; 2] {
+    fn along(&self, _: ContactPoint<S>) -> [Pack<S>; 2] {
         [1.0, 0.0].map(|part| Pack::splat(self.sine.simd(), part))
     }
 
@@ -133,7 +133,7 @@ impl<S: Simd> Collide<S> for PlanarState<S> {
         &self,
         body: &Body,
         point: ContactPoint<S>,
-        response: &Response<Pack<S, 1>>,
+        response: &Response<Pack<S>>,
     ) -> PlanarMotion<S> {
         let PlanarMotion { vx, vz, spin } = self.motion;
         let [arm_x, arm_z] = planar_arm(self, point);
@@ -154,11 +154,11 @@ const UPRIGHT: f64 = 1e-150;
 /// The frame of a contact in space.
 struct ContactFrame<S: Simd> {
     /// **r**_c (6).
-    arm: Vectors<S, 1>,
-    sine: Pack<S, 1>,
+    arm: Vectors<S>,
+    sine: Pack<S>,
     /// **u** along x and y.
-    along_x: Pack<S, 1>,
-    along_y: Pack<S, 1>,
+    along_x: Pack<S>,
+    along_y: Pack<S>,
 }
 
 impl<S: Simd> ContactFrame<S> {
@@ -183,7 +183,7 @@ impl<S: Simd> ContactFrame<S> {
 
 impl<S: Simd> Collide<S> for SpatialState<S> {
     #[inline(always)]
-    fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>> {
+    fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S>> {
         let velocity = self.motion.velocity;
         let ContactPoint { lever, radius } = point;
         let ContactFrame {
@@ -216,7 +216,7 @@ impl<S: Simd> Collide<S> for SpatialState<S> {
         }
     }
 
-    fn along(&self, point: ContactPoint<S>) -> [Pack<S, 1>; 2] {
+    fn along(&self, point: ContactPoint<S>) -> [Pack<S>; 2] {
         let ContactFrame {
             along_x, along_y, ..
         } = ContactFrame::new(self, point);
@@ -228,7 +228,7 @@ impl<S: Simd> Collide<S> for SpatialState<S> {
         &self,
         body: &Body,
         point: ContactPoint<S>,
-        response: &Response<Pack<S, 1>>,
+        response: &Response<Pack<S>>,
     ) -> SpatialMotion<S> {
         let SpatialMotion {
             velocity,

@@ -33,24 +33,24 @@ pub(crate) struct Group<S: Simd, T: Dimension> {
     /// The search along the flight. The start of the flight is later replaced by the state before the impact.
     search: Search<S, FlightOf<S, T>>,
     /// The time of the evaluation, with sine and cosine of the angle turned through by then.
-    pub time: Pack<S, 1>,
-    pub turned: (Pack<S, 1>, Pack<S, 1>),
+    pub time: Pack<S>,
+    pub turned: (Pack<S>, Pack<S>),
     /// The gap there, and the results of the stages that follow.
     evaluation: GapEvaluation<S>,
     steps: Steps<S>,
     prediction: Prediction<S>,
     located: LocatedContact<S>,
     /// The time up to which a contact is ruled out, and the lanes in which it is ruled out up to the evaluation as well.
-    certain: Pack<S, 1>,
-    clear: Mask<S, 1>,
+    certain: Pack<S>,
+    clear: Mask<S>,
     /// The lanes whose contact is not located by the passes so far, the number of these passes, and whether there are such lanes.
-    waiting: Mask<S, 1>,
-    passes: Pack<S, 1>,
+    waiting: Mask<S>,
+    passes: Pack<S>,
     pub is_behind: bool,
     /// The motion after the impact.
     after: MotionOf<S, T>,
     /// Speed at which the point of contact approached the plane.
-    approach: Pack<S, 1>,
+    approach: Pack<S>,
     pub particles: Particles<S>,
 }
 
@@ -108,7 +108,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
 
     /// The angle turned through at the time of the evaluation.
     #[inline(always)]
-    pub fn angle(&self) -> Pack<S, 1> {
+    pub fn angle(&self) -> Pack<S> {
         self.search.angle(self.time)
     }
 
@@ -170,13 +170,13 @@ impl<S: Simd, T: Dimension> Group<S, T> {
 
     /// 1 in each lane that waits, otherwise 0.
     #[inline(always)]
-    pub fn behind(&self) -> Pack<S, 1> {
+    pub fn behind(&self) -> Pack<S> {
         self.waiting.select(1.0, 0.0)
     }
 
     /// The lanes that have an impact.
     #[inline(always)]
-    fn landing(&self) -> Mask<S, 1> {
+    fn landing(&self) -> Mask<S> {
         self.particles.active & !self.waiting
     }
 
@@ -265,7 +265,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
 
     /// The contact that a law is asked about. Of lanes that have none it does not slip along **w**, which takes long.
     #[inline(always)]
-    pub fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>> {
+    pub fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S>> {
         let mut contact = self.before().contact(body, point);
         if T::SPACE {
             let across = &mut contact.velocity.y;
@@ -280,8 +280,8 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         &self,
         law: CustomLaw<'_>,
         point: ContactPoint<S>,
-        contact: &Contact<Pack<S, 1>>,
-    ) -> Result<Response<Pack<S, 1>>, Lost> {
+        contact: &Contact<Pack<S>>,
+    ) -> Result<Response<Pack<S>>, Lost> {
         let along = self.before().along(point);
         let mut response = Response::none(self.time.simd());
         let mut found = Ok(());
@@ -303,8 +303,8 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         &mut self,
         body: &Body,
         point: ContactPoint<S>,
-        contact: &Contact<Pack<S, 1>>,
-        response: &Response<Pack<S, 1>>,
+        contact: &Contact<Pack<S>>,
+        response: &Response<Pack<S>>,
     ) {
         let before = *self.search.flight.start();
         let after = before.after(body, point, response);

@@ -11,46 +11,46 @@ use std::ops::Range;
 /// One impact in each lane, in the core's units: what statistics read, and the pose.
 pub(crate) struct Impact<S: Simd, P> {
     /// Number of the particle in the run.
-    pub particle: Pack<S, 1>,
+    pub particle: Pack<S>,
     /// Number of the impact, counted from 0.
-    pub number: Pack<S, 1>,
+    pub number: Pack<S>,
     /// Time since release.
-    pub time: Pack<S, 1>,
+    pub time: Pack<S>,
     /// Normal velocity of the centre of mass before the impact, v_G^n, positive when falling, and after it, positive when rising.
-    pub fall: Pack<S, 1>,
-    pub rise: Pack<S, 1>,
+    pub fall: Pack<S>,
+    pub rise: Pack<S>,
     /// Kinetic energy of the rotation before the impact.
-    pub rotation: Pack<S, 1>,
+    pub rotation: Pack<S>,
     /// Total kinetic energies before and after the impact.
-    pub energy_before: Pack<S, 1>,
-    pub energy_after: Pack<S, 1>,
+    pub energy_before: Pack<S>,
+    pub energy_after: Pack<S>,
     /// Number of the part that touched, from 1.
-    pub part: Pack<S, 1>,
+    pub part: Pack<S>,
     /// Speed at which the point of contact approached the plane, −v_c^n.
-    pub approach: Pack<S, 1>,
+    pub approach: Pack<S>,
     /// Position, attitude and motion of the body before and after the impact: a [`Pose`].
     pub pose: P,
     /// The lanes that have an impact.
-    pub active: Mask<S, 1>,
+    pub active: Mask<S>,
 }
 
 /// Position and attitude of bodies at an impact, and their motion before and after it. A quantity that a body does not have is NaN: the
 /// axis of one without symmetry, the attitude of one of revolution.
 pub(crate) trait Pose<S: Simd> {
     /// Height of the centre of mass.
-    fn height(&self) -> Pack<S, 1>;
+    fn height(&self) -> Pack<S>;
     /// Sine, up to its sign, and cosine of the angle between the symmetry axis and the plane normal.
-    fn tilt(&self) -> (Pack<S, 1>, Pack<S, 1>);
+    fn tilt(&self) -> (Pack<S>, Pack<S>);
     /// Symmetry axis.
-    fn axis(&self) -> Vectors<S, 1>;
+    fn axis(&self) -> Vectors<S>;
     /// Attitude, a quaternion (w, x, y, z).
-    fn attitude(&self) -> [Pack<S, 1>; 4];
+    fn attitude(&self) -> [Pack<S>; 4];
     /// Velocities of the centre of mass before and after the impact.
-    fn velocities(&self) -> [Vectors<S, 1>; 2];
+    fn velocities(&self) -> [Vectors<S>; 2];
     /// Angular velocity before the impact.
-    fn spin_before(&self) -> Vectors<S, 1>;
+    fn spin_before(&self) -> Vectors<S>;
     /// Angular velocity after the impact.
-    fn spin_after(&self) -> Vectors<S, 1>;
+    fn spin_after(&self) -> Vectors<S>;
     /// The states before and after the impact of a body of revolution.
     #[cfg(feature = "one-lane")]
     fn symmetric(&self) -> Option<[&SpatialState<S>; 2]> {
@@ -61,44 +61,44 @@ pub(crate) trait Pose<S: Simd> {
 /// The pose of a body of revolution.
 pub(crate) struct SymmetricPose<'a, S: Simd> {
     pub body: &'a Body,
-    pub sine: Pack<S, 1>,
+    pub sine: Pack<S>,
     pub before: SpatialState<S>,
     pub after: SpatialState<S>,
 }
 
 impl<S: Simd> Pose<S> for SymmetricPose<'_, S> {
     #[inline(always)]
-    fn height(&self) -> Pack<S, 1> {
+    fn height(&self) -> Pack<S> {
         self.before.height + self.body.hull.level()
     }
 
     #[inline(always)]
-    fn tilt(&self) -> (Pack<S, 1>, Pack<S, 1>) {
+    fn tilt(&self) -> (Pack<S>, Pack<S>) {
         (self.sine, self.before.axis.z)
     }
 
     #[inline(always)]
-    fn axis(&self) -> Vectors<S, 1> {
+    fn axis(&self) -> Vectors<S> {
         self.before.axis
     }
 
     #[inline(always)]
-    fn attitude(&self) -> [Pack<S, 1>; 4] {
+    fn attitude(&self) -> [Pack<S>; 4] {
         [Pack::splat(self.sine.simd(), f64::NAN); 4]
     }
 
     #[inline(always)]
-    fn velocities(&self) -> [Vectors<S, 1>; 2] {
+    fn velocities(&self) -> [Vectors<S>; 2] {
         [self.before.motion.velocity, self.after.motion.velocity]
     }
 
     #[inline(always)]
-    fn spin_before(&self) -> Vectors<S, 1> {
+    fn spin_before(&self) -> Vectors<S> {
         self.before.spin(self.body)
     }
 
     #[inline(always)]
-    fn spin_after(&self) -> Vectors<S, 1> {
+    fn spin_after(&self) -> Vectors<S> {
         self.after.spin(self.body)
     }
 
@@ -111,19 +111,19 @@ impl<S: Simd> Pose<S> for SymmetricPose<'_, S> {
 impl<S: Simd, P> Impact<S, P> {
     /// Coefficient of restitution.
     #[inline(always)]
-    pub fn restitution(&self) -> Pack<S, 1> {
+    pub fn restitution(&self) -> Pack<S> {
         self.rise / self.fall // (1)
     }
 
     /// E_rot/E_tot before the impact.
     #[inline(always)]
-    pub fn rotational_fraction(&self) -> Pack<S, 1> {
+    pub fn rotational_fraction(&self) -> Pack<S> {
         self.rotation / self.energy_before // (12)
     }
 
     /// Total kinetic energy after the impact divided by that before.
     #[inline(always)]
-    pub fn energy_ratio(&self) -> Pack<S, 1> {
+    pub fn energy_ratio(&self) -> Pack<S> {
         self.energy_after / self.energy_before
     }
 }

@@ -30,21 +30,21 @@ pub(crate) struct Lost {
 #[repr(align(64))]
 pub(crate) struct Particles<S: Simd> {
     /// Time since release.
-    pub clock: Pack<S, 1>,
+    pub clock: Pack<S>,
     /// Unresolved flights in a row.
-    unresolved: Pack<S, 1>,
+    unresolved: Pack<S>,
     /// Number of the particle in the run.
-    pub number: Pack<S, 1>,
+    pub number: Pack<S>,
     /// Number of rounds so far, each of which has an impact in the lanes that do not wait.
     rounds: f64,
     /// Number of rounds in which the particle of the lane had none: those before its release, and those in which it waited.
-    idle: Pack<S, 1>,
+    idle: Pack<S>,
     /// The first round after which a particle may have all its impacts.
     due: f64,
     /// The lanes whose particle has not stopped.
-    pub active: Mask<S, 1>,
+    pub active: Mask<S>,
     /// The lanes whose particle has stopped, which the sink does not know yet, and why.
-    ended: Mask<S, 1>,
+    ended: Mask<S>,
     pub has_ended: bool,
     pub reasons: [StopReason; LANES],
 }
@@ -75,7 +75,7 @@ impl<S: Simd> Particles<S> {
         &mut self,
         particles: &mut Range<usize>,
         mut put: impl FnMut(usize, usize),
-    ) -> Mask<S, 1> {
+    ) -> Mask<S> {
         let mut fresh = 0.0 * self.number;
         (!self.active).each(|lane| {
             if let Some(particle) = particles.next() {
@@ -95,7 +95,7 @@ impl<S: Simd> Particles<S> {
 
     /// Counts the round that has ended with an impact in the lanes `landing`, at this time.
     #[inline(always)]
-    pub fn count(&mut self, landing: Mask<S, 1>, clock: Pack<S, 1>, waiting: Option<Pack<S, 1>>) {
+    pub fn count(&mut self, landing: Mask<S>, clock: Pack<S>, waiting: Option<Pack<S>>) {
         self.clock = landing.select(clock, self.clock);
         self.rounds += 1.0;
         if let Some(waiting) = waiting {
@@ -105,7 +105,7 @@ impl<S: Simd> Particles<S> {
 
     /// Ends the particles whose last flights were too low to be resolved; `size` is M T² of this one.
     #[inline(always)]
-    pub fn end_collapsed(&mut self, size: Pack<S, 1>, landing: Mask<S, 1>, waiting: Mask<S, 1>) {
+    pub fn end_collapsed(&mut self, size: Pack<S>, landing: Mask<S>, waiting: Mask<S>) {
         let low = size.lt(UNRESOLVED);
         if low.any() {
             let unresolved = low.select(self.unresolved + 1.0, 0.0);
@@ -131,13 +131,13 @@ impl<S: Simd> Particles<S> {
 
     /// The number of impacts of each particle.
     #[inline(always)]
-    pub fn impacts(&self) -> Pack<S, 1> {
+    pub fn impacts(&self) -> Pack<S> {
         self.rounds - self.idle
     }
 
     /// Ends the active lanes in `which`.
     #[inline(always)]
-    pub fn end(&mut self, which: Mask<S, 1>, reason: StopReason) {
+    pub fn end(&mut self, which: Mask<S>, reason: StopReason) {
         let ending = which & self.active;
         if ending.any() {
             ending.each(|lane| self.reasons[lane] = reason);
@@ -160,7 +160,7 @@ impl<S: Simd> Particles<S> {
 
     /// The numbers that ε_n is drawn with at the next impacts, in the lanes that have a particle.
     #[cold]
-    pub fn chances(&self, release: &impl Release) -> Pack<S, 1> {
+    pub fn chances(&self, release: &impl Release) -> Pack<S> {
         let mut chances = 0.0 * self.number + 0.5;
         self.active.each(|lane| {
             let (particle, impacts) = self.trajectory(lane);

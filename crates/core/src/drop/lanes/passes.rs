@@ -104,6 +104,6 @@ fn are_few_behind<S: Simd, T: Dimension>(groups: &[Group<S, T>]) -> bool {
     for group in &groups[1..] {
         behind = behind + group.behind();
     }
-    let lanes = groups.len() * Pack::<S, 1>::WIDTH;
+    let lanes = groups.len() * Pack::<S>::WIDTH;
     behind.as_slice().iter().sum::<f64>() <= SHARE * lanes as f64
 }

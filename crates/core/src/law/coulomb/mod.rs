@@ -112,9 +112,9 @@ impl ImpulseRule for Coulomb {
     #[inline(always)]
     fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>, impl Compliant<S> + Sliding<S>>,
-        restitution: Pack<S, 1>,
-    ) -> Response<Pack<S, 1>> {
+        contact: &Contact<Pack<S>, impl Compliant<S> + Sliding<S>>,
+        restitution: Pack<S>,
+    ) -> Response<Pack<S>> {
         contact
             .compliance
             .slide(self, contact.velocity, restitution)
@@ -127,9 +127,9 @@ pub(super) trait Sliding<S: Simd> {
     fn slide(
         &self,
         rule: &Coulomb,
-        velocity: Vectors<S, 1>,
-        restitution: Pack<S, 1>,
-    ) -> Response<Pack<S, 1>>;
+        velocity: Vectors<S>,
+        restitution: Pack<S>,
+    ) -> Response<Pack<S>>;
 }
 
 /// Largest μ; beyond it products of μ could overflow, and every contact sticks long before.

@@ -9,23 +9,23 @@ use pulp::Simd;
 /// The contact velocity as a function of the normal impulse p: piecewise linear, with a kink at `stop`.
 struct PiecewiseLinear<S: Simd> {
     /// Impulse p_s at which the slip velocity vanishes; infinite if it never does.
-    stop: Pack<S, 1>,
+    stop: Pack<S>,
     /// dv_c^n/dp before and after p_s. The first may be negative (jamming): the contact then sticks before it separates.
-    first: Pack<S, 1>,
-    second: Pack<S, 1>,
+    first: Pack<S>,
+    second: Pack<S>,
     /// dP_u/dp before and after p_s.
-    first_friction: Pack<S, 1>,
-    second_friction: Pack<S, 1>,
+    first_friction: Pack<S>,
+    second_friction: Pack<S>,
 }
 
-impl<S: Simd> Sliding<S> for AxialCompliance<Pack<S, 1>> {
+impl<S: Simd> Sliding<S> for AxialCompliance<Pack<S>> {
     #[inline(always)]
     fn slide(
         &self,
         rule: &Coulomb,
-        velocity: Vectors<S, 1>,
-        restitution: Pack<S, 1>,
-    ) -> Response<Pack<S, 1>> {
+        velocity: Vectors<S>,
+        restitution: Pack<S>,
+    ) -> Response<Pack<S>> {
         let path = PiecewiseLinear::new(self, velocity.x, rule.friction);
         let (normal, separation_speed) = path.end(velocity.z.abs(), restitution, rule.hypothesis);
         Response {
@@ -37,7 +37,7 @@ impl<S: Simd> Sliding<S> for AxialCompliance<Pack<S, 1>> {
 
 impl<S: Simd> PiecewiseLinear<S> {
     #[inline(always)]
-    fn new(k: &AxialCompliance<Pack<S, 1>>, along: Pack<S, 1>, friction: f64) -> Self {
+    fn new(k: &AxialCompliance<Pack<S>>, along: Pack<S>, friction: f64) -> Self {
         let slip = along.abs();
         let zero = Pack::splat(slip.simd(), 0.0);
         let (nn, uu) = (k.nn(), k.uu());
@@ -61,10 +61,10 @@ impl<S: Simd> PiecewiseLinear<S> {
     #[inline(always)]
     fn end(
         &self,
-        speed: Pack<S, 1>,
-        restitution: Pack<S, 1>,
+        speed: Pack<S>,
+        restitution: Pack<S>,
         hypothesis: Hypothesis,
-    ) -> (Pack<S, 1>, Pack<S, 1>) {
+    ) -> (Pack<S>, Pack<S>) {
         let rebound = restitution * speed;
         let turn = self.stop.mul_add(self.first, -speed); // normal velocity at p_s
         let early = turn.le(0.0); // the slip velocity vanishes during the compression
@@ -110,7 +110,7 @@ impl<S: Simd> PiecewiseLinear<S> {
 
     /// Tangential impulse P_u at a normal impulse p.
     #[inline(always)]
-    fn friction(&self, normal: Pack<S, 1>) -> Pack<S, 1> {
+    fn friction(&self, normal: Pack<S>) -> Pack<S> {
         let slipping = normal.min(self.stop);
         slipping.mul_add(
             self.first_friction,

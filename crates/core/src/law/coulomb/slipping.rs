@@ -41,7 +41,7 @@ use crate::math::nodal::{NODES, Nodal, QUADRATURE, dot, each, moments, rows};
 use crate::math::roots::{deflated, largest_root, zeros};
 use crate::math::{Vector, Vectors};
 use crate::simd::elementary::{ln, plain_exp as exp, power_of_two, rough_ln};
-use crate::simd::{Level, Pack, one};
+use crate::simd::{Lanewise, Level, Pack, one};
 use pulp::{Scalar, Simd, WithSimd};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -73,9 +73,9 @@ impl Sliding<Scalar> for Compliance {
     fn slide(
         &self,
         rule: &Coulomb,
-        velocity: Vectors<Scalar, 1>,
-        restitution: Pack<Scalar, 1>,
-    ) -> Response<Pack<Scalar, 1>> {
+        velocity: Vectors<Scalar>,
+        restitution: Pack<Scalar>,
+    ) -> Response<Pack<Scalar>> {
         if rule.friction == 0.0 {
             let contact = Contact {
                 velocity,

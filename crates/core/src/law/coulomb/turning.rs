@@ -19,7 +19,7 @@ use super::{Coulomb, Hypothesis};
 use crate::law::{Compliant, Contact, ImpulseRule, MOST_CONTACTS, Response};
 use crate::math::Vector;
 use crate::simd::elementary::{exp_in_lanes, exp_m1_in_lanes, polynomial};
-use crate::simd::{LANES, Mask, Pack};
+use crate::simd::{LANES, Lanewise, Mask, Pack};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::PI;
 
@@ -35,15 +35,15 @@ macro_rules! in_lanes {
         $(#[$about])*
         #[derive(Clone, Copy)]
         struct $name<S: Simd> {
-            $($(#[$text])* pub $number: Pack<S, 1>,)*
-            $($($(#[$note])* pub $mask: Mask<S, 1>,)*)?
+            $($(#[$text])* pub $number: Pack<S>,)*
+            $($($(#[$note])* pub $mask: Mask<S>,)*)?
             $($($(#[$said])* pub $shared: $kind,)*)?
         }
 
         impl<S: Simd> $name<S> {
             /// Lane by lane one or the other.
             #[inline(always)]
-            pub fn choose(lanes: Mask<S, 1>, a: &Self, b: &Self) -> Self {
+            pub fn choose(lanes: Mask<S>, a: &Self, b: &Self) -> Self {
                 Self {
                     $($number: lanes.select(a.$number, b.$number),)*
                     $($($mask: lanes & a.$mask | !lanes & b.$mask,)*)?
@@ -81,7 +81,7 @@ in_lanes! {
 
 impl<S: Simd> Rates<S> {
     #[inline(always)]
-    pub fn new([nn, nu, uu, ww]: [Pack<S, 1>; 4], friction: f64) -> Self {
+    pub fn new([nn, nu, uu, ww]: [Pack<S>; 4], friction: f64) -> Self {
         let square = nu * nu;
         let lost = nu.mul_add(nu, -square);
         let determinant = nn.mul_add(uu, -square) - lost;
@@ -104,7 +104,7 @@ impl<S: Simd> Rates<S> {
 
     /// Takes **u** so that this is K_nu.
     #[inline(always)]
-    pub fn turn(&mut self, nu: Pack<S, 1>) {
+    pub fn turn(&mut self, nu: Pack<S>) {
         let (a, b) = (self.uu * self.friction, self.brake);
         self.nu = nu;
         self.plus = nu + (b - a);
@@ -115,7 +115,7 @@ impl<S: Simd> Rates<S> {
 
     /// Sum of the rates at which direction and size of the slip change in θ.
     #[inline(always)]
-    pub fn pace(&self, y: Pack<S, 1>) -> Pack<S, 1> {
+    pub fn pace(&self, y: Pack<S>) -> Pack<S> {
         let turning = self.minus.abs().mul_add(y, self.plus.abs());
         let growing = self.kappa.abs().mul_add(y, self.decay.abs());
         turning.mul_add(2.0, growing + 1e-30)
@@ -123,7 +123,7 @@ impl<S: Simd> Rates<S> {
 
     /// Δv_c^n after ∫A dθ, ∫Ay dθ and ∫Ay² dθ.
     #[inline(always)]
-    pub fn velocity(&self, [x, y, z]: [Pack<S, 1>; 3]) -> Pack<S, 1> {
+    pub fn velocity(&self, [x, y, z]: [Pack<S>; 3]) -> Pack<S> {
         let jam = self.nu * self.friction;
         let twice = 2.0 * self.nn;
         x.mul_add(self.nn - jam, y.mul_add(twice, z * (self.nn + jam)))
@@ -131,7 +131,7 @@ impl<S: Simd> Rates<S> {
 
     /// dv_c^n/dp times 1 + y.
     #[inline(always)]
-    pub fn slope(&self, y: Pack<S, 1>) -> Pack<S, 1> {
+    pub fn slope(&self, y: Pack<S>) -> Pack<S> {
         let jam = self.nu * self.friction;
         (self.nn + jam).mul_add(y, self.nn - jam)
     }
@@ -201,7 +201,7 @@ in_lanes! {
 impl<S: Simd> Goal<S> {
     /// The part of the restitution that is still missing: < 0 once it is over.
     #[inline(always)]
-    pub fn missing(&self, at: &Course<S>) -> Pack<S, 1> {
+    pub fn missing(&self, at: &Course<S>) -> Pack<S> {
         match self.hypothesis {
             Hypothesis::Newton => self.rebound - at.v,
             Hypothesis::Poisson => {
@@ -228,7 +228,7 @@ impl<S: Simd> Course<S> {
 
     /// Turns **u** round in the lanes of the mask.
     #[inline(always)]
-    pub fn turn_round(&mut self, mask: Mask<S, 1>, rates: &mut Rates<S>) {
+    pub fn turn_round(&mut self, mask: Mask<S>, rates: &mut Rates<S>) {
         self.u = mask.select(-self.u, self.u);
         self.along = mask.select(-self.along, self.along);
         self.mirror = mask.select(-self.mirror, self.mirror);
@@ -237,7 +237,7 @@ impl<S: Simd> Course<S> {
 
     /// Returns whether it has gone beyond the next event.
     #[inline(always)]
-    pub fn is_late(&self, goal: &Goal<S>) -> Mask<S, 1> {
+    pub fn is_late(&self, goal: &Goal<S>) -> Mask<S> {
         let zero = Pack::splat(self.v.simd(), 0.0);
         let done = self.v.lt(0.0) | goal.missing(self).le(0.0);
         self.compressing & zero.le(self.v) | !self.compressing & done
@@ -245,7 +245,7 @@ impl<S: Simd> Course<S> {
 
     /// Ends the compression, of the lanes in the mask, where v_c^n = 0.
     #[inline(always)]
-    pub fn turn_back(&mut self, mask: Mask<S, 1>, goal: &Goal<S>) {
+    pub fn turn_back(&mut self, mask: Mask<S>, goal: &Goal<S>) {
         // The balance begins anew, so that a little restitution is not lost in a large compression.
         let balance = self.balance + self.work;
         let taken = self.taken.max(-balance);
@@ -355,17 +355,17 @@ const ARTANH: [f64; 13] = [
 /// The hodograph from a point on.
 struct Hodograph<S: Simd> {
     /// y, y* and D.
-    y: Pack<S, 1>,
-    pub limit: Pack<S, 1>,
-    distance: Pack<S, 1>,
-    sigma: Pack<S, 1>,
-    minus: Pack<S, 1>,
+    y: Pack<S>,
+    pub limit: Pack<S>,
+    distance: Pack<S>,
+    sigma: Pack<S>,
+    minus: Pack<S>,
     /// λ + κy* and κ.
-    decay: Pack<S, 1>,
-    kappa: Pack<S, 1>,
+    decay: Pack<S>,
+    kappa: Pack<S>,
     /// −D/σ and σ + ρ₋D.
-    scale: Pack<S, 1>,
-    gamma: Pack<S, 1>,
+    scale: Pack<S>,
+    gamma: Pack<S>,
 }
 
 /// A point of it.
@@ -379,7 +379,7 @@ struct HodographPoint<S: Simd, const N: usize> {
 
 impl<S: Simd> Hodograph<S> {
     #[inline(always)]
-    pub fn new(rates: &Rates<S>, y: Pack<S, 1>) -> Self {
+    pub fn new(rates: &Rates<S>, y: Pack<S>) -> Self {
         let (plus, minus) = (rates.plus, rates.minus);
         let bend = minus * y;
         let gamma = minus.mul_add(y, plus);
@@ -428,7 +428,7 @@ impl<S: Simd> Hodograph<S> {
 
     /// The distance in θ until ρ₋ζ is too large for the series of artanh, or y has grown too much: infinitely far if it never does.
     #[inline(always)]
-    fn steep(&self) -> Pack<S, 1> {
+    fn steep(&self) -> Pack<S> {
         let bend = self.minus * self.distance;
         let (most, least) = (2.0 * STEEP / (1.0 - STEEP), -2.0 * STEEP / (1.0 + STEEP));
         let steep = bend * bend.lt(0.0).select(1.0 / least, 1.0 / most);
@@ -439,7 +439,7 @@ impl<S: Simd> Hodograph<S> {
 
     /// The distance in θ up to which it may be followed: where 1/y vanishes next to the path the functions have poles.
     #[inline(always)]
-    fn resolved(&self) -> Pack<S, 1> {
+    fn resolved(&self) -> Pack<S> {
         // 1 + ρ₋ζ = 0 where exp(−2σθ) = E = 1 + σ/ρ₋D; |ln E| ≥ 16|q − 1|/(q + 1) with q⁸ = |E|.
         let bend = self.minus * self.distance;
         let ratio = self.gamma / bend;
@@ -461,7 +461,7 @@ impl<S: Simd> Hodograph<S> {
 
     /// The longest panel on which the functions are resolved.
     #[inline(always)]
-    pub fn longest(&self, rates: &Rates<S>, at: &Course<S>) -> Pack<S, 1> {
+    pub fn longest(&self, rates: &Rates<S>, at: &Course<S>) -> Pack<S> {
         let y = self.y;
         let size = self.distance.abs();
         let still = size.eq(0.0);
@@ -480,7 +480,7 @@ impl<S: Simd> Hodograph<S> {
 
 /// Least way, in θ, on which ζ becomes so large: infinite if it never does.
 #[inline(always)]
-fn reach<S: Simd>(sigma: Pack<S, 1>, distance: Pack<S, 1>, zeta: Pack<S, 1>) -> Pack<S, 1> {
+fn reach<S: Simd>(sigma: Pack<S>, distance: Pack<S>, zeta: Pack<S>) -> Pack<S> {
     // −ln(1 − t)/2σ with t = σζ/D; −ln(1 − t) ≥ 8(1 − q)/(1 + q) with q⁴ = 1 − t.
     let fourth = 1.0 - sigma * zeta / distance;
     let q = fourth.max(0.0).sqrt().sqrt();
@@ -507,7 +507,7 @@ const WIDE: usize = 10;
 
 /// Sum over the vectors.
 #[inline(always)]
-fn sum<S: Simd>(terms: &Pack<S, WIDE>) -> Pack<S, 1> {
+fn sum<S: Simd>(terms: &Pack<S, WIDE>) -> Pack<S> {
     let mut sum = terms.part(0);
     for k in 1..WIDE {
         sum = sum + terms.part(k);
@@ -521,7 +521,7 @@ fn integrate_panel<S: Simd>(
     (rates, path): (&Rates<S>, &Hodograph<S>),
     goal: &Goal<S>,
     at: &Course<S>,
-    length: Pack<S, 1>,
+    length: Pack<S>,
 ) -> Course<S> {
     let end_turn = path.limit.mul_add(length, path.at(length).turn);
     let start = at.y.repeat::<WIDE>();
@@ -531,7 +531,7 @@ fn integrate_panel<S: Simd>(
         let (mut theta, mut weight) = (zero, zero);
         for (k, &(node, share)) in chunk.iter().enumerate() {
             theta.set_part(k, &(length * node));
-            weight.set_part(k, &Pack::<S, 1>::splat(length.simd(), share));
+            weight.set_part(k, &Pack::<S>::splat(length.simd(), share));
         }
         let point = path.at(theta);
         let change = exp_m1_in_lanes(point.growth);
@@ -562,9 +562,9 @@ fn integrate_panel<S: Simd>(
 fn arrive<S: Simd>(
     rates: &Rates<S>,
     at: &mut Course<S>,
-    [x, y, z]: [Pack<S, 1>; 3],
-    theta: Pack<S, 1>,
-    turn: Pack<S, 1>,
+    [x, y, z]: [Pack<S>; 3],
+    theta: Pack<S>,
+    turn: Pack<S>,
 ) {
     let exponent = -rates.decay.mul_add(theta, rates.kappa * turn);
     let braked = (-(rates.brake * (theta + turn))).max(-BRAKE);
@@ -615,19 +615,19 @@ const NEWTON_STEPS: usize = 2;
 
 /// Coefficients of x, x², ...
 #[derive(Clone, Copy)]
-struct Polynomial<S: Simd>(pub [Pack<S, 1>; ORDER]);
+struct Polynomial<S: Simd>(pub [Pack<S>; ORDER]);
 
 /// The argument at which a series takes a value.
 struct Root<S: Simd> {
-    pub x: Pack<S, 1>,
+    pub x: Pack<S>,
     /// The slope there, and Newton's last step.
-    pub slope: Pack<S, 1>,
-    pub step: Pack<S, 1>,
+    pub slope: Pack<S>,
+    pub step: Pack<S>,
 }
 
 impl<S: Simd> Polynomial<S> {
     #[inline(always)]
-    pub fn at(&self, x: Pack<S, 1>) -> Pack<S, 1> {
+    pub fn at(&self, x: Pack<S>) -> Pack<S> {
         let mut sum = self.0[ORDER - 1];
         for k in (0..ORDER - 1).rev() {
             sum = sum.mul_add(x, self.0[k]);
@@ -637,7 +637,7 @@ impl<S: Simd> Polynomial<S> {
 
     /// Finds the argument, beyond `from`, at which it is `value`; its slope at `from` is `slope`.
     #[inline(always)]
-    pub fn reaches(&self, value: Pack<S, 1>, from: Pack<S, 1>, slope: Pack<S, 1>) -> Root<S> {
+    pub fn reaches(&self, value: Pack<S>, from: Pack<S>, slope: Pack<S>) -> Root<S> {
         let rest = value - self.at(from);
         let mut x = from + parabola(slope, self.0[1], rest);
         let mut step = x;
@@ -659,14 +659,14 @@ impl<S: Simd> Polynomial<S> {
 
     /// Size of what is left out at 1.
     #[inline(always)]
-    pub fn rest(&self) -> Pack<S, 1> {
+    pub fn rest(&self) -> Pack<S> {
         self.0[ORDER - 1].abs() + self.0[ORDER - 2].abs()
     }
 }
 
 /// Solves bx + cx² = `value`: the root next to 0, or the positive one where b = 0.
 #[inline(always)]
-fn parabola<S: Simd>(b: Pack<S, 1>, c: Pack<S, 1>, value: Pack<S, 1>) -> Pack<S, 1> {
+fn parabola<S: Simd>(b: Pack<S>, c: Pack<S>, value: Pack<S>) -> Pack<S> {
     let root = b.mul_add(b, 4.0 * c * value).max(0.0).sqrt();
     let sum = b + b.lt(0.0).select(-root, root);
     sum.eq(0.0).select(0.0, 2.0 * value / sum)
@@ -674,7 +674,7 @@ fn parabola<S: Simd>(b: Pack<S, 1>, c: Pack<S, 1>, value: Pack<S, 1>) -> Pack<S,
 
 /// |x| to the power of the first term left out.
 #[inline(always)]
-fn power<S: Simd>(x: Pack<S, 1>) -> Pack<S, 1> {
+fn power<S: Simd>(x: Pack<S>) -> Pack<S> {
     let cube = x * x * x;
     (cube * cube * x).abs()
 }
@@ -690,7 +690,7 @@ const SHORT: f64 = 1.0 / 1_048_576.0; // 2⁻²⁰
 
 /// The distance to the next event in θ if the velocity is linear in p and A(1 + y)² exponential in θ; infinite if there is none.
 #[inline(always)]
-fn guess<S: Simd>(rates: &Rates<S>, goal: &Goal<S>, at: &Course<S>) -> Pack<S, 1> {
+fn guess<S: Simd>(rates: &Rates<S>, goal: &Goal<S>, at: &Course<S>) -> Pack<S> {
     let whole = 1.0 + at.y;
     let stiff = rates.slope(at.y) / whole;
     let zero = Pack::splat(at.v.simd(), 0.0);
@@ -722,7 +722,7 @@ fn guess<S: Simd>(rates: &Rates<S>, goal: &Goal<S>, at: &Course<S>) -> Pack<S, 1
 
 /// The distance in θ over which v_c^n certainly has no extremum, or almost certainly.
 #[inline(always)]
-fn crest<S: Simd>(rates: &Rates<S>, at: &Course<S>) -> Pack<S, 1> {
+fn crest<S: Simd>(rates: &Rates<S>, at: &Course<S>) -> Pack<S> {
     let zero = Pack::splat(at.y.simd(), 0.0);
     let (now, jam) = (rates.slope(at.y), rates.nu * rates.friction);
     // There y = c, and y₀ − y = (ρ₊ + ρ₋y₀)ζ/(1 + ρ₋ζ).
@@ -734,7 +734,7 @@ fn crest<S: Simd>(rates: &Rates<S>, at: &Course<S>) -> Pack<S, 1> {
 
 /// Goes through the events that are near, and says how far the next one is, in θ: infinitely far if there is none.
 #[inline(always)]
-fn events<S: Simd>(rates: &Rates<S>, goal: &Goal<S>, at: &mut Course<S>) -> Pack<S, 1> {
+fn events<S: Simd>(rates: &Rates<S>, goal: &Goal<S>, at: &mut Course<S>) -> Pack<S> {
     let far = guess(rates, goal, at);
     let crest = crest(rates, at);
     let near = (at.is_late(goal) | (far * rates.pace(at.y)).le(NEAR)) & !at.over;
@@ -752,13 +752,13 @@ fn beyond<S: Simd>(
     goal: &Goal<S>,
     at: &Course<S>,
     end: &Course<S>,
-    length: Pack<S, 1>,
-) -> Mask<S, 1> {
+    length: Pack<S>,
+) -> Mask<S> {
     let zero = Pack::splat(at.v.simd(), 0.0);
     let y = end.w * end.w / (4.0 * end.a * end.a);
     let slip = end.a * (1.0 + y);
     let reach = 0.5 / rates.pace(y);
-    let is_far = |off: Pack<S, 1>, rate: Pack<S, 1>| zero.lt(off) & !off.le(rate * reach);
+    let is_far = |off: Pack<S>, rate: Pack<S>| zero.lt(off) & !off.le(rate * reach);
     let after = rates.slope(y);
     let sign = at.compressing.select(1.0, zero - 1.0);
     let rests = is_far(sign * end.v, sign * slip * after);
@@ -788,7 +788,7 @@ const ROUGH: f64 = 1.0 / 128.0;
 /// The series.
 struct Near<S: Simd> {
     /// 1/R.
-    unit: Pack<S, 1>,
+    unit: Pack<S>,
     /// ∫A dθ, ∫Ay dθ, ∫Ay² dθ, ∫y dθ.
     first: Polynomial<S>,
     second: Polynomial<S>,
@@ -855,33 +855,27 @@ impl<S: Simd> Near<S> {
 
     /// The terms left out, as a velocity.
     #[inline(always)]
-    fn error(&self, rates: &Rates<S>, x: Pack<S, 1>) -> Pack<S, 1> {
+    fn error(&self, rates: &Rates<S>, x: Pack<S>) -> Pack<S> {
         let rest = self.impulse.rest().mul_add(rates.nn, self.velocity.rest());
         power(x) * rest
     }
 
     /// Returns whether an event beyond `from` is found to rounding, of which the velocity `allowed` is left.
     #[inline(always)]
-    fn exact(
-        &self,
-        rates: &Rates<S>,
-        root: &Root<S>,
-        from: Pack<S, 1>,
-        allowed: Pack<S, 1>,
-    ) -> Mask<S, 1> {
+    fn exact(&self, rates: &Rates<S>, root: &Root<S>, from: Pack<S>, allowed: Pack<S>) -> Mask<S> {
         let small = root.step.abs().le((root.x - from).abs() * FOUND);
         small & self.error(rates, root.x).le(allowed)
     }
 
     /// Returns whether what is `due` is a work that the series from here resolve.
     #[inline(always)]
-    fn keeps(&self, x: Pack<S, 1>, from: Pack<S, 1>, due: Pack<S, 1>) -> Mask<S, 1> {
+    fn keeps(&self, x: Pack<S>, from: Pack<S>, due: Pack<S>) -> Mask<S> {
         (self.work.rest() * power(x)).le(due * EXACT) & self.work.at(from).abs().le(16.0 * due)
     }
 
     /// Returns whether it is found roughly.
     #[inline(always)]
-    fn rough(&self, rates: &Rates<S>, root: &Root<S>, from: Pack<S, 1>) -> Mask<S, 1> {
+    fn rough(&self, rates: &Rates<S>, root: &Root<S>, from: Pack<S>) -> Mask<S> {
         let small = root.step.abs().le((root.x - from).abs() * GUESSED);
         let pace = self.impulse.0[0].mul_add(rates.nn, self.velocity.0[0].abs());
         let way = pace * root.x.abs();
@@ -894,10 +888,10 @@ impl<S: Simd> Near<S> {
         &self,
         rates: &Rates<S>,
         goal: &Goal<S>,
-        near: Mask<S, 1>,
-        crest: Pack<S, 1>,
+        near: Mask<S>,
+        crest: Pack<S>,
         at: &mut Course<S>,
-    ) -> Pack<S, 1> {
+    ) -> Pack<S> {
         let zero = Pack::splat(at.v.simd(), 0.0);
         let allowed = rates.nn.mul_add(at.normal, goal.approach) * EXACT;
         let crest = crest / self.unit;
@@ -990,19 +984,19 @@ const STRAIGHT: f64 = 2.0 * f64::EPSILON;
 /// The way of a slip that vanishes.
 struct VanishingSlip<S: Simd> {
     /// True if the slip vanishes, unless the impact is over before.
-    pub reached: Mask<S, 1>,
+    pub reached: Mask<S>,
     /// True if **u** is taken the other way.
-    back: Mask<S, 1>,
+    back: Mask<S>,
     /// A, y*, D.
-    a: Pack<S, 1>,
-    limit: Pack<S, 1>,
-    distance: Pack<S, 1>,
+    a: Pack<S>,
+    limit: Pack<S>,
+    distance: Pack<S>,
     /// 1/G₁, and times that ρ₋, σ, λ*, κ.
-    unit: Pack<S, 1>,
-    minus: Pack<S, 1>,
-    sigma: Pack<S, 1>,
-    decay: Pack<S, 1>,
-    kappa: Pack<S, 1>,
+    unit: Pack<S>,
+    minus: Pack<S>,
+    sigma: Pack<S>,
+    decay: Pack<S>,
+    kappa: Pack<S>,
 }
 
 impl<S: Simd> VanishingSlip<S> {
@@ -1043,7 +1037,7 @@ impl<S: Simd> VanishingSlip<S> {
 
     /// The fraction for A to the power of `order`, closed as if it went on without change, and cut off: N₁ to N₆ with a common factor.
     #[inline(always)]
-    fn levels(&self, order: f64) -> [[Pack<S, 1>; 6]; 2] {
+    fn levels(&self, order: f64) -> [[Pack<S>; 6]; 2] {
         let (decay, kappa, d) = (self.decay * order, self.kappa * order, self.distance);
         let (twice, bend) = (2.0 * self.sigma, 2.0 * self.minus);
         let mixed = (decay * self.minus - kappa * self.sigma) * d;
@@ -1079,7 +1073,7 @@ impl<S: Simd> VanishingSlip<S> {
 
     /// ∫(1 + y)² A dθ from the levels for A, over A/G₁, as a fraction.
     #[inline(always)]
-    fn impulse(&self, n: &[Pack<S, 1>; 6]) -> (Pack<S, 1>, Pack<S, 1>) {
+    fn impulse(&self, n: &[Pack<S>; 6]) -> (Pack<S>, Pack<S>) {
         let (d, q) = (self.distance, 1.0 + self.limit);
         let pull = self.kappa * d;
         let whole = pull.mul_add(n[1], n[0]) * self.decay;
@@ -1089,7 +1083,7 @@ impl<S: Simd> VanishingSlip<S> {
 
     /// ∫(1 − y)(1 + y)² A² dθ from the levels for A², over A²/G₁, as a fraction.
     #[inline(always)]
-    fn moment(&self, n: &[Pack<S, 1>; 6]) -> (Pack<S, 1>, Pack<S, 1>) {
+    fn moment(&self, n: &[Pack<S>; 6]) -> (Pack<S>, Pack<S>) {
         let (d, q) = (self.distance, 1.0 + self.limit);
         let (decay, pull) = (2.0 * self.decay, 2.0 * self.kappa * d);
         let whole = pull.mul_add(n[1], n[0]) * decay;
@@ -1107,7 +1101,7 @@ impl<S: Simd> VanishingSlip<S> {
 
     /// Goes to where the slip vanishes, if nothing happens before: of which lanes that is true.
     #[inline(always)]
-    pub fn pass(&self, rates: &Rates<S>, goal: &Goal<S>, at: &mut Course<S>) -> Mask<S, 1> {
+    pub fn pass(&self, rates: &Rates<S>, goal: &Goal<S>, at: &mut Course<S>) -> Mask<S> {
         let zero = Pack::splat(at.y.simd(), 0.0);
         if !(self.reached & !at.over).any() {
             return self.reached & zero.lt(zero);
@@ -1161,12 +1155,12 @@ struct OngoingImpacts<S: Simd> {
     goal: Goal<S>,
     course: Course<S>,
     /// Panels so far.
-    panels: Pack<S, 1>,
+    panels: Pack<S>,
 }
 
 impl<S: Simd> OngoingImpacts<S> {
     #[inline(always)]
-    fn new(contact: &Contact<Pack<S, 1>>, restitution: Pack<S, 1>, rule: &Coulomb) -> Self {
+    fn new(contact: &Contact<Pack<S>>, restitution: Pack<S>, rule: &Coulomb) -> Self {
         let simd = restitution.simd();
         let zero = Pack::splat(simd, 0.0);
         let k = &contact.compliance;
@@ -1276,7 +1270,7 @@ impl<S: Simd> OngoingImpacts<S> {
 
     /// The answers to those that are over.
     #[inline(always)]
-    fn answer(&self) -> Response<Pack<S, 1>> {
+    fn answer(&self) -> Response<Pack<S>> {
         let (course, goal) = (&self.course, &self.goal);
         let scale = goal.scale;
         // A plastic contact is not left: rounding must not end its stay.
@@ -1293,7 +1287,7 @@ impl<S: Simd> OngoingImpacts<S> {
 
     /// Takes others in the lanes of the mask.
     #[inline(always)]
-    fn take(&mut self, mask: Mask<S, 1>, others: &Self) {
+    fn take(&mut self, mask: Mask<S>, others: &Self) {
         *self = Self {
             rates: Rates::choose(mask, &others.rates, &self.rates),
             goal: Goal::choose(mask, &others.goal, &self.goal),
@@ -1304,7 +1298,7 @@ impl<S: Simd> OngoingImpacts<S> {
 
     /// Answers the contacts that are over, and frees their lanes.
     #[inline(always)]
-    fn end(&self, places: &mut Places, responses: &mut [Response<Pack<S, 1>>]) {
+    fn end(&self, places: &mut Places, responses: &mut [Response<Pack<S>>]) {
         if !self.course.over.any() {
             return;
         }
@@ -1327,9 +1321,9 @@ type Places = [Option<(usize, usize)>; LANES];
 /// Contacts that may slip in any direction, μ > 0, to be answered in a function of its own: it is long.
 pub(in crate::law) struct Turning<'a, S: Simd> {
     pub rule: &'a Coulomb,
-    pub contacts: &'a [Contact<Pack<S, 1>>],
-    pub restitution: &'a [Pack<S, 1>],
-    pub responses: &'a mut [Response<Pack<S, 1>>],
+    pub contacts: &'a [Contact<Pack<S>>],
+    pub restitution: &'a [Pack<S>],
+    pub responses: &'a mut [Response<Pack<S>>],
 }
 
 impl<S: Simd> WithSimd for Turning<'_, S> {
@@ -1347,7 +1341,7 @@ impl<S: Simd> WithSimd for Turning<'_, S> {
             self.responses[i] = impacts.answer();
             if !turns.all() {
                 let straight = self.rule.respond::<S, false>(contact, restitution);
-                self.responses[i] = self.responses[i].or(!turns, &straight);
+                self.responses[i] = self.responses[i].or(!turns, straight);
             }
             open[i] = !impacts.course.over & turns;
             waits |= open[i].any();
@@ -1361,8 +1355,8 @@ impl<S: Simd> WithSimd for Turning<'_, S> {
 impl<S: Simd> Turning<'_, S> {
     /// Finds the responses that are open.
     #[inline(always)]
-    fn finish(self, open: &[Mask<S, 1>]) {
-        let width = Pack::<S, 1>::WIDTH;
+    fn finish(self, open: &[Mask<S>]) {
+        let width = Pack::<S>::WIDTH;
         let mut waiting = (0..self.contacts.len() * width)
             .map(|j| (j / width, j % width))
             .filter(|&(i, k)| open[i].get(k));

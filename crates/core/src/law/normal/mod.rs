@@ -83,7 +83,7 @@ impl Normal<'_> {
 
     /// [`Self::at`] in every lane.
     #[inline(always)]
-    pub(crate) fn in_lanes<S: Simd>(&self, speed: Pack<S, 1>) -> Pack<S, 1> {
+    pub(crate) fn in_lanes<S: Simd>(&self, speed: Pack<S>) -> Pack<S> {
         match self {
             Self::Constant(value) => Pack::splat(speed.simd(), *value),
             Self::Viscoelastic(material) => material.in_lanes(speed),
@@ -97,9 +97,9 @@ impl Normal<'_> {
     #[inline(always)]
     pub(crate) fn apart<S: Simd>(
         &self,
-        speed: Pack<S, 1>,
-        scatter: Option<(f64, Pack<S, 1>)>,
-    ) -> Pack<S, 1> {
+        speed: Pack<S>,
+        scatter: Option<(f64, Pack<S>)>,
+    ) -> Pack<S> {
         speed.simd().vectorize(Coefficients {
             normal: self,
             speed,
@@ -129,12 +129,12 @@ impl Normal<'_> {
 /// A coefficient and the speeds at which it is evaluated, compiled for each SIMD level.
 struct Coefficients<'a, 'b, S: Simd> {
     normal: &'a Normal<'b>,
-    speed: Pack<S, 1>,
-    scatter: Option<(f64, Pack<S, 1>)>,
+    speed: Pack<S>,
+    scatter: Option<(f64, Pack<S>)>,
 }
 
 impl<S: Simd> WithSimd for Coefficients<'_, '_, S> {
-    type Output = Pack<S, 1>;
+    type Output = Pack<S>;
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _: T) -> Self::Output {

@@ -45,7 +45,7 @@ impl Plastic {
     }
 
     #[inline(always)]
-    pub(super) fn in_lanes<S: Simd>(&self, speed: Pack<S, 1>) -> Pack<S, 1> {
+    pub(super) fn in_lanes<S: Simd>(&self, speed: Pack<S>) -> Pack<S> {
         let yielding = Pack::splat(speed.simd(), self.yield_speed);
         let x = yielding / speed.max(yielding);
         let square = x * x;

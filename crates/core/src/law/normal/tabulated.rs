@@ -106,7 +106,7 @@ impl<'a> Tabulated<'a> {
     }
 
     #[inline(always)]
-    pub(super) fn in_lanes<S: Simd>(&self, speed: Pack<S, 1>) -> Pack<S, 1> {
+    pub(super) fn in_lanes<S: Simd>(&self, speed: Pack<S>) -> Pack<S> {
         let mut lanes = speed * self.unit;
         for x in lanes.as_mut_slice() {
             *x = self.interpolated(*x);

@@ -116,7 +116,7 @@ impl Viscoelastic {
     }
 
     #[inline(always)]
-    pub(super) fn in_lanes<S: Simd>(&self, speed: Pack<S, 1>) -> Pack<S, 1> {
+    pub(super) fn in_lanes<S: Simd>(&self, speed: Pack<S>) -> Pack<S> {
         let mut root = speed.sqrt();
         for x in root.as_mut_slice() {
             *x = fifth_root(*x); // v^{1/10}

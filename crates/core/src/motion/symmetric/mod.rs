@@ -26,8 +26,8 @@ use pulp::Simd;
 /// the angle Ωt turned through since the start of the flight.
 #[derive(Clone, Copy)]
 pub(crate) struct Attitude<S: Simd> {
-    pub sine: Pack<S, 1>,
-    pub cosine: Pack<S, 1>,
+    pub sine: Pack<S>,
+    pub cosine: Pack<S>,
 }
 
 lanewise! {
@@ -41,7 +41,7 @@ lanewise! {
 impl<S: Simd> Attitude<S> {
     /// The attitude after a further rotation by the angle with this sine and cosine (3).
     #[inline(always)]
-    pub fn after(self, sin: Pack<S, 1>, cos: Pack<S, 1>) -> Self {
+    pub fn after(self, sin: Pack<S>, cos: Pack<S>) -> Self {
         Self {
             sine: self.sine.mul_add(cos, self.cosine * sin), // (3)
             cosine: self.cosine.mul_add(cos, -(self.sine * sin)), // (3)
@@ -50,14 +50,14 @@ impl<S: Simd> Attitude<S> {
 
     /// The attitude after a further rotation by a moderate `angle`: accurate to double precision for angles up to ½.
     #[inline(always)]
-    pub fn turned(self, angle: Pack<S, 1>) -> Self {
+    pub fn turned(self, angle: Pack<S>) -> Self {
         let (sin, cos) = moderate_sincos_in_lanes(angle);
         self.after(sin, cos)
     }
 
     /// The attitude after a further rotation by a small `angle`: accurate to double precision for angles up to 2⁻¹⁸.
     #[inline(always)]
-    pub fn advanced(self, angle: Pack<S, 1>) -> Self {
+    pub fn advanced(self, angle: Pack<S>) -> Self {
         self.after(angle, (angle * angle).mul_add(-0.5, 1.0))
     }
 }
@@ -72,13 +72,13 @@ pub(crate) trait SymmetricState<S: Simd>: Lanewise<S> {
     /// Puts the state of a particle into a lane.
     fn put(&mut self, lane: usize, start: &State);
     /// Height of the centre of mass above the hull's level.
-    fn height(&self) -> Pack<S, 1>;
+    fn height(&self) -> Pack<S>;
     /// Vertical velocity of the centre of mass.
-    fn vz(&self) -> Pack<S, 1>;
+    fn vz(&self) -> Pack<S>;
     /// Sine of the angle between the axis and the plane normal: signed in planar motion, ≥ 0 in space.
-    fn sine(&self) -> Pack<S, 1>;
+    fn sine(&self) -> Pack<S>;
     /// Cosine of that angle, e_z.
-    fn cos_tilt(&self) -> Pack<S, 1>;
+    fn cos_tilt(&self) -> Pack<S>;
     /// Velocity and angular momentum.
     fn motion(&self) -> Self::Motion;
     /// The same position with another motion.
@@ -86,9 +86,9 @@ pub(crate) trait SymmetricState<S: Simd>: Lanewise<S> {
     /// The same state with three-dimensional vectors.
     fn in_space(&self) -> SpatialState<S>;
     /// Kinetic energy of the rotation, in m g R.
-    fn rotational_energy(&self, body: &Body) -> Pack<S, 1>;
+    fn rotational_energy(&self, body: &Body) -> Pack<S>;
     /// Kinetic energy, in m g R.
-    fn kinetic_energy(&self, body: &Body) -> Pack<S, 1>;
+    fn kinetic_energy(&self, body: &Body) -> Pack<S>;
 }
 
 /// A flight that starts from a [`SymmetricState`] at time 0.
@@ -101,19 +101,19 @@ pub(crate) trait Flight<S: Simd>: Copy {
     /// The state at its start.
     fn start(&self) -> &Self::State;
     /// Angular velocity Ω of the axis, up to its sign.
-    fn rate(&self) -> Pack<S, 1>;
+    fn rate(&self) -> Pack<S>;
     /// Ω², and bounds for any flight time: on the amplitude A of e_z, and on |e_z|, |c| + A.
-    fn bounds(&self) -> [Pack<S, 1>; 3];
+    fn bounds(&self) -> [Pack<S>; 3];
     /// The attitude after a rotation by Ωt, of which sine and cosine are given.
-    fn attitude(&self, turned: (Pack<S, 1>, Pack<S, 1>)) -> Attitude<S>;
+    fn attitude(&self, turned: (Pack<S>, Pack<S>)) -> Attitude<S>;
     /// e_z and its time derivatives at an attitude (3).
-    fn axis_motion(&self, attitude: Attitude<S>) -> AxisMotion<S, 1>;
+    fn axis_motion(&self, attitude: Attitude<S>) -> AxisMotion<S>;
     /// e_z and its time derivatives at the start.
-    fn axis_motion_at_start(&self) -> AxisMotion<S, 1>;
+    fn axis_motion_at_start(&self) -> AxisMotion<S>;
     /// The state at `time`. Its height is left at that of the start, because at a contact the hull gives it more accurately.
-    fn state(&self, time: Pack<S, 1>, attitude: Attitude<S>) -> Self::State;
+    fn state(&self, time: Pack<S>, attitude: Attitude<S>) -> Self::State;
     /// Ends the flight: `state`, with the `height` at which the body touches, replaces the start.
-    fn end(&mut self, state: Self::State, height: Pack<S, 1>);
+    fn end(&mut self, state: Self::State, height: Pack<S>);
 
     /// Replaces the flight by one that starts at the same position with another motion.
     #[inline(always)]
@@ -123,14 +123,14 @@ pub(crate) trait Flight<S: Simd>: Copy {
 
     /// Height of the centre of mass above the hull's level at `time` (5).
     #[inline(always)]
-    fn height_at(&self, time: Pack<S, 1>) -> Pack<S, 1> {
+    fn height_at(&self, time: Pack<S>) -> Pack<S> {
         let start = self.start();
         time.mul_add(time.mul_add(-0.5, start.vz()), start.height()) // (5)
     }
 
     /// Its vertical velocity at `time`.
     #[inline(always)]
-    fn vz_at(&self, time: Pack<S, 1>) -> Pack<S, 1> {
+    fn vz_at(&self, time: Pack<S>) -> Pack<S> {
         self.start().vz() - time // (5)
     }
 }

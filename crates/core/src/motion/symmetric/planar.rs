@@ -9,18 +9,18 @@ use pulp::Simd;
 /// Position and motion, and the flight from there.
 #[derive(Clone, Copy)]
 pub(crate) struct PlanarState<S: Simd> {
-    pub height: Pack<S, 1>,
-    pub sine: Pack<S, 1>,
-    pub cosine: Pack<S, 1>,
+    pub height: Pack<S>,
+    pub sine: Pack<S>,
+    pub cosine: Pack<S>,
     pub motion: PlanarMotion<S>,
 }
 
 /// v_x, v_z and ω.
 #[derive(Clone, Copy)]
 pub(crate) struct PlanarMotion<S: Simd> {
-    pub vx: Pack<S, 1>,
-    pub vz: Pack<S, 1>,
-    pub spin: Pack<S, 1>,
+    pub vx: Pack<S>,
+    pub vz: Pack<S>,
+    pub spin: Pack<S>,
 }
 
 impl<S: Simd> SymmetricState<S> for PlanarState<S> {
@@ -46,22 +46,22 @@ impl<S: Simd> SymmetricState<S> for PlanarState<S> {
     }
 
     #[inline(always)]
-    fn height(&self) -> Pack<S, 1> {
+    fn height(&self) -> Pack<S> {
         self.height
     }
 
     #[inline(always)]
-    fn vz(&self) -> Pack<S, 1> {
+    fn vz(&self) -> Pack<S> {
         self.motion.vz
     }
 
     #[inline(always)]
-    fn sine(&self) -> Pack<S, 1> {
+    fn sine(&self) -> Pack<S> {
         self.sine
     }
 
     #[inline(always)]
-    fn cos_tilt(&self) -> Pack<S, 1> {
+    fn cos_tilt(&self) -> Pack<S> {
         self.cosine
     }
 
@@ -90,13 +90,13 @@ impl<S: Simd> SymmetricState<S> for PlanarState<S> {
     }
 
     #[inline(always)]
-    fn rotational_energy(&self, body: &Body) -> Pack<S, 1> {
+    fn rotational_energy(&self, body: &Body) -> Pack<S> {
         let spin = self.motion.spin;
         0.5 * body.transverse * (spin * spin)
     }
 
     #[inline(always)]
-    fn kinetic_energy(&self, body: &Body) -> Pack<S, 1> {
+    fn kinetic_energy(&self, body: &Body) -> Pack<S> {
         let PlanarMotion { vx, vz, .. } = self.motion;
         0.5 * vx.mul_add(vx, vz * vz) + self.rotational_energy(body)
     }
@@ -118,23 +118,23 @@ impl<S: Simd> Flight<S> for PlanarState<S> {
     }
 
     #[inline(always)]
-    fn rate(&self) -> Pack<S, 1> {
+    fn rate(&self) -> Pack<S> {
         self.motion.spin
     }
 
     #[inline(always)]
-    fn bounds(&self) -> [Pack<S, 1>; 3] {
+    fn bounds(&self) -> [Pack<S>; 3] {
         let (rate, one) = (self.rate(), Pack::splat(self.height.simd(), 1.0));
         [rate * rate, one, one]
     }
 
     #[inline(always)]
-    fn attitude(&self, (sin, cos): (Pack<S, 1>, Pack<S, 1>)) -> Attitude<S> {
+    fn attitude(&self, (sin, cos): (Pack<S>, Pack<S>)) -> Attitude<S> {
         self.now().after(sin, cos)
     }
 
     #[inline(always)]
-    fn axis_motion(&self, attitude: Attitude<S>) -> AxisMotion<S, 1> {
+    fn axis_motion(&self, attitude: Attitude<S>) -> AxisMotion<S> {
         let square = self.rate() * self.rate();
         AxisMotion {
             cos_tilt: attitude.cosine,
@@ -145,12 +145,12 @@ impl<S: Simd> Flight<S> for PlanarState<S> {
     }
 
     #[inline(always)]
-    fn axis_motion_at_start(&self) -> AxisMotion<S, 1> {
+    fn axis_motion_at_start(&self) -> AxisMotion<S> {
         self.axis_motion(self.now())
     }
 
     #[inline(always)]
-    fn state(&self, time: Pack<S, 1>, attitude: Attitude<S>) -> Self {
+    fn state(&self, time: Pack<S>, attitude: Attitude<S>) -> Self {
         let Attitude { sine, cosine } = attitude;
         // One Newton step to unit length; rounding would otherwise accumulate over the impacts.
         let length = sine.mul_add(sine, cosine * cosine).mul_add(-0.5, 1.5);
@@ -166,7 +166,7 @@ impl<S: Simd> Flight<S> for PlanarState<S> {
     }
 
     #[inline(always)]
-    fn end(&mut self, state: Self, height: Pack<S, 1>) {
+    fn end(&mut self, state: Self, height: Pack<S>) {
         *self = Self { height, ..state };
     }
 }

@@ -30,22 +30,22 @@ impl<S: Simd> SymmetricState<S> for SpatialState<S> {
     }
 
     #[inline(always)]
-    fn height(&self) -> Pack<S, 1> {
+    fn height(&self) -> Pack<S> {
         self.height
     }
 
     #[inline(always)]
-    fn vz(&self) -> Pack<S, 1> {
+    fn vz(&self) -> Pack<S> {
         self.motion.velocity.z
     }
 
     #[inline(always)]
-    fn sine(&self) -> Pack<S, 1> {
+    fn sine(&self) -> Pack<S> {
         self.axis.horizontal()
     }
 
     #[inline(always)]
-    fn cos_tilt(&self) -> Pack<S, 1> {
+    fn cos_tilt(&self) -> Pack<S> {
         self.axis.z
     }
 
@@ -66,13 +66,13 @@ impl<S: Simd> SymmetricState<S> for SpatialState<S> {
 
     /// **ω**·**Λ**/2, the rotational part of (12).
     #[inline(always)]
-    fn rotational_energy(&self, body: &Body) -> Pack<S, 1> {
+    fn rotational_energy(&self, body: &Body) -> Pack<S> {
         let precession = self.motion.precession;
         0.5 * body.transverse * self.spin(body).dot(precession)
     }
 
     #[inline(always)]
-    fn kinetic_energy(&self, body: &Body) -> Pack<S, 1> {
+    fn kinetic_energy(&self, body: &Body) -> Pack<S> {
         let velocity = self.motion.velocity;
         0.5 * velocity.dot(velocity) + self.rotational_energy(body)
     }
@@ -84,16 +84,16 @@ pub(crate) struct SpatialFlight<S: Simd> {
     start: SpatialState<S>,
     slope: f64,
     /// Ω and Ω².
-    rate: Pack<S, 1>,
-    square: Pack<S, 1>,
+    rate: Pack<S>,
+    square: Pack<S>,
     /// **p**·**e**/Ω² and 1/Ω; 0 for a body that does not rotate.
-    share: Pack<S, 1>,
-    inverse: Pack<S, 1>,
+    share: Pack<S>,
+    inverse: Pack<S>,
     /// e_z is `centre + cosine cos φ + sine sin φ`, φ = Ωt (3).
-    centre: Pack<S, 1>,
-    cosine: Pack<S, 1>,
-    sine: Pack<S, 1>,
-    amplitude: Pack<S, 1>,
+    centre: Pack<S>,
+    cosine: Pack<S>,
+    sine: Pack<S>,
+    amplitude: Pack<S>,
 }
 
 /// Ω² below which a body is treated as not rotating.
@@ -134,23 +134,23 @@ impl<S: Simd> Flight<S> for SpatialFlight<S> {
     }
 
     #[inline(always)]
-    fn rate(&self) -> Pack<S, 1> {
+    fn rate(&self) -> Pack<S> {
         self.rate
     }
 
     #[inline(always)]
-    fn bounds(&self) -> [Pack<S, 1>; 3] {
+    fn bounds(&self) -> [Pack<S>; 3] {
         let highest = self.centre.abs() + self.amplitude;
         [self.square, self.amplitude, highest]
     }
 
     #[inline(always)]
-    fn attitude(&self, (sine, cosine): (Pack<S, 1>, Pack<S, 1>)) -> Attitude<S> {
+    fn attitude(&self, (sine, cosine): (Pack<S>, Pack<S>)) -> Attitude<S> {
         Attitude { sine, cosine }
     }
 
     #[inline(always)]
-    fn axis_motion(&self, Attitude { sine, cosine }: Attitude<S>) -> AxisMotion<S, 1> {
+    fn axis_motion(&self, Attitude { sine, cosine }: Attitude<S>) -> AxisMotion<S> {
         let turning = self.cosine.mul_add(cosine, self.sine * sine); // (3)
         let leading = self.sine.mul_add(cosine, -(self.cosine * sine)); // a quarter of a turn later
         AxisMotion {
@@ -162,7 +162,7 @@ impl<S: Simd> Flight<S> for SpatialFlight<S> {
     }
 
     #[inline(always)]
-    fn axis_motion_at_start(&self) -> AxisMotion<S, 1> {
+    fn axis_motion_at_start(&self) -> AxisMotion<S> {
         AxisMotion {
             cos_tilt: self.start.axis.z,
             rate: self.rate * self.sine,
@@ -172,7 +172,7 @@ impl<S: Simd> Flight<S> for SpatialFlight<S> {
     }
 
     #[inline(always)]
-    fn state(&self, time: Pack<S, 1>, attitude: Attitude<S>) -> SpatialState<S> {
+    fn state(&self, time: Pack<S>, attitude: Attitude<S>) -> SpatialState<S> {
         let SpatialState {
             axis,
             motion,
@@ -198,7 +198,7 @@ impl<S: Simd> Flight<S> for SpatialFlight<S> {
     }
 
     #[inline(always)]
-    fn end(&mut self, state: SpatialState<S>, height: Pack<S, 1>) {
+    fn end(&mut self, state: SpatialState<S>, height: Pack<S>) {
         self.start = SpatialState { height, ..state };
     }
 }

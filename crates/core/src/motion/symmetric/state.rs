@@ -78,23 +78,23 @@ impl State {
 /// Position and motion of a body in each lane, as [`State`].
 #[derive(Clone, Copy)]
 pub(crate) struct SpatialState<S: Simd> {
-    pub height: Pack<S, 1>,
+    pub height: Pack<S>,
     /// Unit vector of the symmetry axis, from sphere 2 to sphere 1.
-    pub axis: Vectors<S, 1>,
+    pub axis: Vectors<S>,
     pub motion: SpatialMotion<S>,
 }
 
 /// v_G and **p** = **Λ**/J_xx.
 #[derive(Clone, Copy)]
 pub(crate) struct SpatialMotion<S: Simd> {
-    pub velocity: Vectors<S, 1>,
-    pub precession: Vectors<S, 1>,
+    pub velocity: Vectors<S>,
+    pub precession: Vectors<S>,
 }
 
 impl<S: Simd> SpatialState<S> {
     /// Angular velocity **ω** = Ĵ⁻¹**Λ**.
     #[inline(always)]
-    pub fn spin(&self, body: &Body) -> Vectors<S, 1> {
+    pub fn spin(&self, body: &Body) -> Vectors<S> {
         let axial = body.transverse / body.axial - 1.0;
         let precession = self.motion.precession;
         self.axis

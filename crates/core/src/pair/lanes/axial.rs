@@ -93,22 +93,22 @@ impl LaneBody for AxialBody {
 /// One body in each lane.
 pub(in crate::pair) struct AxialFlight<S: Simd> {
     /// **e** at its beginning, and **Λ**/J.
-    axis: Vectors<S, 1>,
-    precession: Vectors<S, 1>,
+    axis: Vectors<S>,
+    precession: Vectors<S>,
     /// The rotation of **e** since the encounter was given.
     turned: Quaternions<S>,
     /// Of **e** the part along **Λ**, that across, and **Λ** × **e**/|Λ|; Ω, and |**e**″|.
-    motion: [Vectors<S, 1>; 3],
-    rate: Pack<S, 1>,
-    bend: Pack<S, 1>,
+    motion: [Vectors<S>; 3],
+    rate: Pack<S>,
+    bend: Pack<S>,
     /// Of a spheroid the largest distance of its points from **Λ**.
-    swing: Pack<S, 1>,
+    swing: Pack<S>,
 }
 
 impl<S: Simd> AxialFlight<S> {
     /// **e** and **e**′ at a time, of which sine and cosine of the angle are given.
     #[inline(always)]
-    fn at(&self, (sine, cosine): (Pack<S, 1>, Pack<S, 1>)) -> [Vectors<S, 1>; 2] {
+    fn at(&self, (sine, cosine): (Pack<S>, Pack<S>)) -> [Vectors<S>; 2] {
         let [along, second, third] = self.motion;
         let axis = third.mul_add(sine, second.mul_add(cosine, along));
         let change = third * cosine - second * sine;
@@ -117,7 +117,7 @@ impl<S: Simd> AxialFlight<S> {
 
     /// The same with what turns it.
     #[inline(always)]
-    fn turning(&self, time: Pack<S, 1>) -> TurningAxis<S> {
+    fn turning(&self, time: Pack<S>) -> TurningAxis<S> {
         let [axis, change] = self.at(sincos_in_lanes(self.rate * time));
         TurningAxis {
             axis,
@@ -132,9 +132,9 @@ impl<S: Simd> AxialFlight<S> {
 impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
     type Body = AxialBody;
     /// The height on the axis.
-    type Place = Pack<S, 1>;
+    type Place = Pack<S>;
     /// **e** and **e**′.
-    type Pose = [Vectors<S, 1>; 2];
+    type Pose = [Vectors<S>; 2];
     type Ended = EndedRotations<S>;
     const FEW: u32 = 1;
 
@@ -163,7 +163,7 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
     }
 
     #[inline(always)]
-    fn begin(&mut self, body: &AxialBody, fresh: Mask<S, 1>) -> Mask<S, 1> {
+    fn begin(&mut self, body: &AxialBody, fresh: Mask<S>) -> Mask<S> {
         let square = self.precession.dot(self.precession);
         let rate = square.sqrt();
         let turns = Pack::splat(rate.simd(), 0.0).lt(rate);
@@ -190,12 +190,12 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
     }
 
     #[inline(always)]
-    fn bend(&self) -> Pack<S, 1> {
+    fn bend(&self) -> Pack<S> {
         self.bend
     }
 
     #[inline(always)]
-    fn turn(&mut self, lanes: Mask<S, 1>, time: Pack<S, 1>) {
+    fn turn(&mut self, lanes: Mask<S>, time: Pack<S>) {
         let half = sincos_in_lanes(0.5 * self.rate * time);
         let (s, c) = half;
         let [axis, _] = self.at((2.0 * s * c, c * c - s * s));
@@ -208,7 +208,7 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
     }
 
     #[inline(always)]
-    fn pose(&mut self, _: &AxialBody, time: Pack<S, 1>) -> Self::Pose {
+    fn pose(&mut self, _: &AxialBody, time: Pack<S>) -> Self::Pose {
         self.at(sincos_in_lanes(self.rate * time))
     }
 
@@ -218,39 +218,39 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
         &[axis, change]: &Self::Pose,
         (_, ball): (usize, &LaneBall),
         sign: f64,
-        [y, velocity]: [Vectors<S, 1>; 2],
-    ) -> [Vectors<S, 1>; 2] {
+        [y, velocity]: [Vectors<S>; 2],
+    ) -> [Vectors<S>; 2] {
         let height = sign * ball.place.z;
         [axis.mul_add(height, y), change.mul_add(height, velocity)]
     }
 
     #[inline(always)]
-    fn choose(place: &mut Pack<S, 1>, lanes: Mask<S, 1>, ball: &LaneBall) {
+    fn choose(place: &mut Pack<S>, lanes: Mask<S>, ball: &LaneBall) {
         *place = lanes.select(ball.place.z, *place);
     }
 
     #[inline(always)]
-    fn reached(&self, place: Pack<S, 1>, sign: f64, from: Vectors<S, 1>) -> Vectors<S, 1> {
+    fn reached(&self, place: Pack<S>, sign: f64, from: Vectors<S>) -> Vectors<S> {
         self.axis.mul_add(sign * place, from)
     }
 
     #[inline(always)]
-    fn arm(&self, place: Pack<S, 1>, normal: Vectors<S, 1>) -> Vectors<S, 1> {
+    fn arm(&self, place: Pack<S>, normal: Vectors<S>) -> Vectors<S> {
         self.axis.cross(normal) * place
     }
 
     #[inline(always)]
-    fn compliance(&self, body: &AxialBody, arm: Vectors<S, 1>, from: Pack<S, 1>) -> Pack<S, 1> {
+    fn compliance(&self, body: &AxialBody, arm: Vectors<S>, from: Pack<S>) -> Pack<S> {
         arm.dot(arm).mul_add(body.inverse, from)
     }
 
     #[inline(always)]
-    fn speed(&self, arm: Vectors<S, 1>) -> Pack<S, 1> {
+    fn speed(&self, arm: Vectors<S>) -> Pack<S> {
         self.precession.dot(arm)
     }
 
     #[inline(always)]
-    fn push(&mut self, body: &AxialBody, arm: Vectors<S, 1>, impulse: Pack<S, 1>) {
+    fn push(&mut self, body: &AxialBody, arm: Vectors<S>, impulse: Pack<S>) {
         self.precession = arm.mul_add(impulse * body.inverse, self.precession);
     }
 
@@ -258,7 +258,7 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
     fn look(
         all: &mut Encountering<S, Self>,
         pair: &LanePair<'_, '_, AxialBody>,
-        active: Mask<S, 1>,
+        active: Mask<S>,
     ) -> NearestParts<S> {
         let Some(parts) = AxialBody::parts(pair) else {
             return all.look(pair);
@@ -291,9 +291,9 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
     fn meet(
         all: &mut Encountering<S, Self>,
         pair: &LanePair<'_, '_, AxialBody>,
-        touched: Mask<S, 1>,
-        balls: Pack<S, 1>,
-    ) -> LaneContact<S, Pack<S, 1>> {
+        touched: Mask<S>,
+        balls: Pack<S>,
+    ) -> LaneContact<S, Pack<S>> {
         let Some(parts) = AxialBody::parts(pair) else {
             return all.meet(pair, balls);
         };
@@ -339,7 +339,7 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
             body.time.as_mut_slice()[to] = from.passed[i] + all.clock.as_slice()[lane];
         }
         ended.count += 1;
-        if ended.count == Pack::<S, 1>::WIDTH {
+        if ended.count == Pack::<S>::WIDTH {
             Self::find(ended, run.pair, run.ends);
         }
     }
@@ -374,8 +374,8 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
 #[inline(always)]
 fn then<S: Simd>(
     turned: Quaternions<S>,
-    about: Vectors<S, 1>,
-    (sine, cosine): (Pack<S, 1>, Pack<S, 1>),
+    about: Vectors<S>,
+    (sine, cosine): (Pack<S>, Pack<S>),
 ) -> Quaternions<S> {
     let (v, own) = (about * sine, turned.vector());
     Quaternions::of(
@@ -396,7 +396,7 @@ pub(in crate::pair) struct EndedRotations<S: Simd> {
 struct EndedRotation<S: Simd> {
     attitude: Quaternions<S>,
     turned: Quaternions<S>,
-    precession: Vectors<S, 1>,
-    own: Pack<S, 1>,
-    time: Pack<S, 1>,
+    precession: Vectors<S>,
+    own: Pack<S>,
+    time: Pack<S>,
 }

@@ -56,20 +56,20 @@ const MOST_PAIRS: usize = 1000;
 pub(in crate::pair) struct ClumpFlight<S: Simd> {
     /// At the beginning, and ω in the principal axes.
     attitude: Quaternions<S>,
-    spin: Vectors<S, 1>,
+    spin: Vectors<S>,
     rotations: Rotations<S>,
-    bend: Pack<S, 1>,
+    bend: Pack<S>,
     /// The places and the velocities of the balls at the last look.
-    moved: Vec<[Vectors<S, 1>; 2]>,
+    moved: Vec<[Vectors<S>; 2]>,
 }
 
 impl<S: Simd> LaneFlight<S> for ClumpFlight<S> {
     type Body = ClumpBody;
     /// In the principal axes.
-    type Place = Vectors<S, 1>;
+    type Place = Vectors<S>;
     type Pose = ();
     type Ended = ();
-    const FEW: u32 = (Pack::<S, 1>::WIDTH as u32).div_ceil(3);
+    const FEW: u32 = (Pack::<S>::WIDTH as u32).div_ceil(3);
 
     fn none(simd: S) -> Self {
         Self {
@@ -88,25 +88,25 @@ impl<S: Simd> LaneFlight<S> for ClumpFlight<S> {
     }
 
     #[inline(always)]
-    fn begin(&mut self, body: &ClumpBody, _: Mask<S, 1>) -> Mask<S, 1> {
+    fn begin(&mut self, body: &ClumpBody, _: Mask<S>) -> Mask<S> {
         let simd = self.bend.simd();
         simd.vectorize(Begin(self, body))
     }
 
     #[inline(always)]
-    fn bend(&self) -> Pack<S, 1> {
+    fn bend(&self) -> Pack<S> {
         self.bend
     }
 
     #[inline(always)]
-    fn turn(&mut self, lanes: Mask<S, 1>, time: Pack<S, 1>) {
+    fn turn(&mut self, lanes: Mask<S>, time: Pack<S>) {
         let (attitude, spin) = time.simd().vectorize(RotationsAt(&self.rotations, time));
         self.attitude = self.attitude.or(lanes, attitude);
         self.spin = self.spin.or(lanes, spin);
     }
 
     #[inline(always)]
-    fn pose(&mut self, body: &ClumpBody, time: Pack<S, 1>) {
+    fn pose(&mut self, body: &ClumpBody, time: Pack<S>) {
         let (attitude, spin) = time.simd().vectorize(RotationsAt(&self.rotations, time));
         let spin = attitude.rotate(spin);
         self.moved.clear();
@@ -122,39 +122,39 @@ impl<S: Simd> LaneFlight<S> for ClumpFlight<S> {
         (): &(),
         (number, _): (usize, &LaneBall),
         sign: f64,
-        [y, velocity]: [Vectors<S, 1>; 2],
-    ) -> [Vectors<S, 1>; 2] {
+        [y, velocity]: [Vectors<S>; 2],
+    ) -> [Vectors<S>; 2] {
         let [place, change] = self.moved[number];
         [place.mul_add(sign, y), change.mul_add(sign, velocity)]
     }
 
     #[inline(always)]
-    fn choose(place: &mut Vectors<S, 1>, lanes: Mask<S, 1>, ball: &LaneBall) {
+    fn choose(place: &mut Vectors<S>, lanes: Mask<S>, ball: &LaneBall) {
         *place = place.or(lanes, Vectors::splat(lanes.simd(), ball.place));
     }
 
     #[inline(always)]
-    fn reached(&self, place: Vectors<S, 1>, sign: f64, from: Vectors<S, 1>) -> Vectors<S, 1> {
+    fn reached(&self, place: Vectors<S>, sign: f64, from: Vectors<S>) -> Vectors<S> {
         self.attitude.rotate(place).mul_add(sign, from)
     }
 
     #[inline(always)]
-    fn arm(&self, place: Vectors<S, 1>, normal: Vectors<S, 1>) -> Vectors<S, 1> {
+    fn arm(&self, place: Vectors<S>, normal: Vectors<S>) -> Vectors<S> {
         place.cross(self.attitude.inverse().rotate(normal))
     }
 
     #[inline(always)]
-    fn compliance(&self, body: &ClumpBody, arm: Vectors<S, 1>, from: Pack<S, 1>) -> Pack<S, 1> {
+    fn compliance(&self, body: &ClumpBody, arm: Vectors<S>, from: Pack<S>) -> Pack<S> {
         arm.dot(body.changed(arm)) + from
     }
 
     #[inline(always)]
-    fn speed(&self, arm: Vectors<S, 1>) -> Pack<S, 1> {
+    fn speed(&self, arm: Vectors<S>) -> Pack<S> {
         self.spin.dot(arm)
     }
 
     #[inline(always)]
-    fn push(&mut self, body: &ClumpBody, arm: Vectors<S, 1>, impulse: Pack<S, 1>) {
+    fn push(&mut self, body: &ClumpBody, arm: Vectors<S>, impulse: Pack<S>) {
         self.spin = body.changed(arm).mul_add(impulse, self.spin);
     }
 
@@ -182,13 +182,13 @@ impl<S: Simd> LaneFlight<S> for ClumpFlight<S> {
 
 /// [`ClumpFlight::begin`], and [`Rotations::at`]: compiled separately, because they are long, and wanted in several places.
 struct Begin<'a, S: Simd>(&'a mut ClumpFlight<S>, &'a ClumpBody);
-struct RotationsAt<'a, S: Simd>(&'a Rotations<S>, Pack<S, 1>);
+struct RotationsAt<'a, S: Simd>(&'a Rotations<S>, Pack<S>);
 
 impl<S: Simd> WithSimd for Begin<'_, S> {
-    type Output = Mask<S, 1>;
+    type Output = Mask<S>;
 
     #[inline(always)]
-    fn with_simd<U: Simd>(self, _: U) -> Mask<S, 1> {
+    fn with_simd<U: Simd>(self, _: U) -> Mask<S> {
         let Self(flight, ClumpBody { top, .. }) = self;
         let (rotations, known) = Rotations::new(top, flight.attitude, flight.spin);
         flight.rotations = rotations;
@@ -198,7 +198,7 @@ impl<S: Simd> WithSimd for Begin<'_, S> {
 }
 
 impl<S: Simd> WithSimd for RotationsAt<'_, S> {
-    type Output = (Quaternions<S>, Vectors<S, 1>);
+    type Output = (Quaternions<S>, Vectors<S>);
 
     #[inline(always)]
     fn with_simd<U: Simd>(self, _: U) -> Self::Output {
@@ -210,7 +210,7 @@ impl<S: Simd> WithSimd for RotationsAt<'_, S> {
 impl ClumpBody {
     /// J⁻¹ times a vector.
     #[inline(always)]
-    fn changed<S: Simd>(&self, arm: Vectors<S, 1>) -> Vectors<S, 1> {
+    fn changed<S: Simd>(&self, arm: Vectors<S>) -> Vectors<S> {
         let [a, b, c] = self.inverse_moments;
         Vectors::new(a * arm.x, b * arm.y, c * arm.z)
     }

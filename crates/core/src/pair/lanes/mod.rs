@@ -83,41 +83,41 @@ pub(super) trait LaneFlight<S: Simd>: Sized {
     /// Puts a body into a lane.
     fn put(&mut self, lane: usize, body: &Self::Body, state: &FreeBody);
     /// Begins a flight in some lanes; returns those in which it is known.
-    fn begin(&mut self, body: &Self::Body, fresh: Mask<S, 1>) -> Mask<S, 1>;
+    fn begin(&mut self, body: &Self::Body, fresh: Mask<S>) -> Mask<S>;
     /// The largest acceleration of a point, per distance from the centre of mass.
-    fn bend(&self) -> Pack<S, 1>;
+    fn bend(&self) -> Pack<S>;
     /// Turns the bodies of some lanes for a time.
-    fn turn(&mut self, lanes: Mask<S, 1>, time: Pack<S, 1>);
+    fn turn(&mut self, lanes: Mask<S>, time: Pack<S>);
     /// The bodies at a time.
-    fn pose(&mut self, body: &Self::Body, time: Pack<S, 1>) -> Self::Pose;
+    fn pose(&mut self, body: &Self::Body, time: Pack<S>) -> Self::Pose;
     /// A place and its velocity, with those of the ball of this number added with a sign.
     fn moved(
         &self,
         pose: &Self::Pose,
         ball: (usize, &LaneBall),
         sign: f64,
-        from: [Vectors<S, 1>; 2],
-    ) -> [Vectors<S, 1>; 2];
+        from: [Vectors<S>; 2],
+    ) -> [Vectors<S>; 2];
 
     /// Makes it that of a ball in some lanes.
-    fn choose(place: &mut Self::Place, lanes: Mask<S, 1>, ball: &LaneBall);
+    fn choose(place: &mut Self::Place, lanes: Mask<S>, ball: &LaneBall);
     /// A vector with that to a place now added with a sign.
-    fn reached(&self, place: Self::Place, sign: f64, from: Vectors<S, 1>) -> Vectors<S, 1>;
+    fn reached(&self, place: Self::Place, sign: f64, from: Vectors<S>) -> Vectors<S>;
     /// **p** × **n**.
-    fn arm(&self, place: Self::Place, normal: Vectors<S, 1>) -> Vectors<S, 1>;
+    fn arm(&self, place: Self::Place, normal: Vectors<S>) -> Vectors<S>;
     /// K_nn with that of this body.
-    fn compliance(&self, body: &Self::Body, arm: Vectors<S, 1>, from: Pack<S, 1>) -> Pack<S, 1>;
+    fn compliance(&self, body: &Self::Body, arm: Vectors<S>, from: Pack<S>) -> Pack<S>;
     /// The velocity along **n** of the place with this arm, from that of the centre of mass.
-    fn speed(&self, arm: Vectors<S, 1>) -> Pack<S, 1>;
+    fn speed(&self, arm: Vectors<S>) -> Pack<S>;
     /// Changes the angular momentum by an impulse along **n**.
-    fn push(&mut self, body: &Self::Body, arm: Vectors<S, 1>, impulse: Pack<S, 1>); // (11)
+    fn push(&mut self, body: &Self::Body, arm: Vectors<S>, impulse: Pack<S>); // (11)
 
     /// Looks at the bodies in some lanes.
     #[inline(always)]
     fn look(
         all: &mut Encountering<S, Self>,
         pair: &LanePair<'_, '_, Self::Body>,
-        _: Mask<S, 1>,
+        _: Mask<S>,
     ) -> NearestParts<S> {
         all.look(pair)
     }
@@ -127,8 +127,8 @@ pub(super) trait LaneFlight<S: Simd>: Sized {
     fn meet(
         all: &mut Encountering<S, Self>,
         pair: &LanePair<'_, '_, Self::Body>,
-        _: Mask<S, 1>,
-        balls: Pack<S, 1>,
+        _: Mask<S>,
+        balls: Pack<S>,
     ) -> LaneContact<S, Self::Place> {
         all.meet(pair, balls)
     }
@@ -205,7 +205,7 @@ impl<'a, 'b, B: LaneBody> LanePair<'a, 'b, B> {
 
 /// The lanes that are true, as bits: what [`Mask::each`] would call for each is not compiled for the vectors unless it is small.
 #[inline(always)]
-fn bits<S: Simd>(mask: Mask<S, 1>) -> u32 {
+fn bits<S: Simd>(mask: Mask<S>) -> u32 {
     let lanes = mask.select(1.0, 0.0);
     let mut bits = 0;
     for (lane, &number) in lanes.as_slice().iter().enumerate() {
@@ -225,42 +225,42 @@ fn take(bits: &mut u32) -> Option<usize> {
 /// The encounters in the lanes.
 pub(super) struct Encountering<S: Simd, F> {
     /// Place and velocity of the first bodies relative to the second, at the beginning of the flight.
-    apart: Vectors<S, 1>,
-    velocity: Vectors<S, 1>,
+    apart: Vectors<S>,
+    velocity: Vectors<S>,
     bodies: [F; 2],
     /// Those in which a flight is not known.
-    unknown: Mask<S, 1>,
+    unknown: Mask<S>,
     /// Since the flight began: the time of the next look, and that at which they are out of reach; 0 if they are from the beginning, infinite if only
     /// their rotation moves them.
-    time: Pack<S, 1>,
-    until: Pack<S, 1>,
+    time: Pack<S>,
+    until: Pack<S>,
     /// The two balls that leave each other, counted from 1, or 0, and their speed.
-    left: Pack<S, 1>,
-    left_speed: Pack<S, 1>,
+    left: Pack<S>,
+    left_speed: Pack<S>,
     /// The last normal between spheroids, or none.
-    normal: Vectors<S, 1>,
+    normal: Vectors<S>,
     /// A time in which no gap changes visibly if its rate is 0.
-    shortest: Pack<S, 1>,
-    looks: Pack<S, 1>,
+    shortest: Pack<S>,
+    looks: Pack<S>,
     /// Since the encounter was given.
-    clock: Pack<S, 1>,
-    contacts: Pack<S, 1>,
-    steps: Pack<S, 1>,
+    clock: Pack<S>,
+    contacts: Pack<S>,
+    steps: Pack<S>,
     /// The impulses on the first body, and their sum with the time of each as a factor.
-    impulse: Vectors<S, 1>,
-    moment: Vectors<S, 1>,
+    impulse: Vectors<S>,
+    moment: Vectors<S>,
 }
 
 /// What a look finds: the time up to which nothing touches, and of the two balls that may touch then their number from 1 on, rate and bound of the gap.
 pub(super) struct NearestParts<S: Simd> {
-    clear: Pack<S, 1>,
-    balls: Pack<S, 1>,
-    rate: Pack<S, 1>,
-    bound: Pack<S, 1>,
+    clear: Pack<S>,
+    balls: Pack<S>,
+    rate: Pack<S>,
+    bound: Pack<S>,
 }
 
 /// The normal of a contact, the places of the balls that touch, and the radius of the first.
-pub(super) type LaneContact<S, P> = (Vectors<S, 1>, [P; 2], Pack<S, 1>);
+pub(super) type LaneContact<S, P> = (Vectors<S>, [P; 2], Pack<S>);
 
 impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
     #[inline(always)]
@@ -309,7 +309,7 @@ impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
 
     /// Begins flights in some lanes.
     #[inline(always)]
-    fn begin(&mut self, pair: &LanePair<'_, '_, F::Body>, fresh: Mask<S, 1>) {
+    fn begin(&mut self, pair: &LanePair<'_, '_, F::Body>, fresh: Mask<S>) {
         let simd = self.time.simd();
         let zero = Pack::splat(simd, 0.0);
         let reach = pair.reach;
@@ -382,7 +382,7 @@ impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
 
     /// Moves the bodies of some lanes for a time.
     #[inline(always)]
-    fn pass(&mut self, lanes: Mask<S, 1>, time: Pack<S, 1>) {
+    fn pass(&mut self, lanes: Mask<S>, time: Pack<S>) {
         self.apart = self
             .apart
             .or(lanes, self.velocity.mul_add(time, self.apart));
@@ -394,11 +394,7 @@ impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
 
     /// Where balls of these numbers touch.
     #[inline(always)]
-    fn meet(
-        &self,
-        pair: &LanePair<'_, '_, F::Body>,
-        balls: Pack<S, 1>,
-    ) -> LaneContact<S, F::Place> {
+    fn meet(&self, pair: &LanePair<'_, '_, F::Body>, balls: Pack<S>) -> LaneContact<S, F::Place> {
         let simd = balls.simd();
         let nowhere = F::Place::none(simd);
         let (mut places, mut radius) = ([nowhere; 2], Pack::splat(simd, 0.0));
@@ -466,7 +462,7 @@ impl<S: Simd, F: LaneFlight<S>> Encountering<S, F> {
         &mut self,
         run: &LaneEncounters<'_, '_, '_, F::Body>,
         jobs: &[usize; MOST_LANES],
-        fresh: Mask<S, 1>,
+        fresh: Mask<S>,
     ) {
         for (i, body) in self.bodies.iter_mut().enumerate() {
             let mut passed = Pack::splat(self.time.simd(), 0.0);
@@ -487,9 +483,9 @@ impl<B: LaneBody> LaneEncounters<'_, '_, '_, B> {
         &mut self,
         all: &mut Encountering<S, B::Flight<S>>,
         jobs: &[usize; MOST_LANES],
-        touched: Mask<S, 1>,
-        balls: Pack<S, 1>,
-    ) -> Mask<S, 1> {
+        touched: Mask<S>,
+        balls: Pack<S>,
+    ) -> Mask<S> {
         let pair = self.pair;
         let zero = Pack::splat(balls.simd(), 0.0);
         let (normal, places, radius) = B::Flight::meet(all, pair, touched, balls);
@@ -518,7 +514,7 @@ impl<B: LaneBody> LaneEncounters<'_, '_, '_, B> {
             let firsts = one.reached(places[0], 1.0, from) - normal * radius;
             let mut lanes = bits(touched);
             while let Some(lane) = take(&mut lanes) {
-                let at = |pack: &Pack<S, 1>| pack.as_slice()[lane];
+                let at = |pack: &Pack<S>| pack.as_slice()[lane];
                 let (job, normal) = (jobs[lane], normal.lane(lane));
                 let centre = all.place(lane, 0, pair, &self.approaches[job]);
                 hit(

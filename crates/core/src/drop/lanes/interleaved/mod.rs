@@ -39,7 +39,7 @@ pub(crate) fn of_group<S: Simd>(group: usize) -> Range<usize> {
 /// The places of these groups.
 #[inline(always)]
 pub(super) fn of_groups<S: Simd>(groups: Range<usize>) -> Range<usize> {
-    let width = Pack::<S, 1>::WIDTH;
+    let width = Pack::<S>::WIDTH;
     groups.start * width..groups.end * width
 }
 
@@ -48,7 +48,7 @@ const STAGES: usize = 8;
 
 /// Returns whether work is interleaved at a SIMD level: only where a vector has a lane for each stage.
 pub(super) const fn is_interleaved<S: Simd>() -> bool {
-    Pack::<S, 1>::WIDTH == STAGES
+    Pack::<S>::WIDTH == STAGES
 }
 
 /// Works up the impact of a lane of a group, after the stage of the same number.

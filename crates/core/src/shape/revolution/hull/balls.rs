@@ -76,7 +76,7 @@ impl<const TWO: bool, const EQUAL: bool> Balls<TWO, EQUAL> {
 
     /// e_z minus its value where both spheres touch: negative where sphere 1 is the lower one.
     #[inline(always)]
-    fn lean<S: Simd>(&self, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+    fn lean<S: Simd>(&self, cos_tilt: Pack<S>) -> Pack<S> {
         if TWO && !EQUAL {
             cos_tilt - self.cos_tilt
         } else {
@@ -97,7 +97,7 @@ impl<const TWO: bool, const EQUAL: bool> Hull for Balls<TWO, EQUAL> {
     }
 
     #[inline(always)]
-    fn ceiling<S: Simd>(&self, max_cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+    fn ceiling<S: Simd>(&self, max_cos_tilt: Pack<S>) -> Pack<S> {
         let [one, two] = self.levers();
         if EQUAL || !TWO {
             return one.abs() * max_cos_tilt;
@@ -107,13 +107,13 @@ impl<const TWO: bool, const EQUAL: bool> Hull for Balls<TWO, EQUAL> {
     }
 
     #[inline(always)]
-    fn curvature_bound<S: Simd>(&self, amplitude: Pack<S, 1>, _: Pack<S, 1>) -> Pack<S, 1> {
+    fn curvature_bound<S: Simd>(&self, amplitude: Pack<S>, _: Pack<S>) -> Pack<S> {
         let [one, two] = self.levers();
         one.abs().max(two.abs()) * amplitude
     }
 
     #[inline(always)]
-    fn part<S: Simd>(&self, one: Mask<S, 1>) -> HullPart<S> {
+    fn part<S: Simd>(&self, one: Mask<S>) -> HullPart<S> {
         let [first, second] = self.levers();
         HullPart {
             one,
@@ -126,10 +126,10 @@ impl<const TWO: bool, const EQUAL: bool> Hull for Balls<TWO, EQUAL> {
     #[inline(always)]
     fn nearer<S: Simd>(
         &self,
-        height: Pack<S, 1>,
-        vz: Pack<S, 1>,
-        axis_motion: &AxisMotion<S, 1>,
-        bound: Pack<S, 1>,
+        height: Pack<S>,
+        vz: Pack<S>,
+        axis_motion: &AxisMotion<S>,
+        bound: Pack<S>,
     ) -> HullPart<S> {
         if !TWO {
             return self.part(Mask::splat(height.simd(), true));
@@ -146,27 +146,22 @@ impl<const TWO: bool, const EQUAL: bool> Hull for Balls<TWO, EQUAL> {
     }
 
     #[inline(always)]
-    fn gap<S: Simd>(
-        &self,
-        part: &HullPart<S>,
-        cos_tilt: Pack<S, 1>,
-        height: Pack<S, 1>,
-    ) -> Pack<S, 1> {
+    fn gap<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S>, height: Pack<S>) -> Pack<S> {
         part.own.mul_add(self.lean(cos_tilt), height) // (2)
     }
 
     #[inline(always)]
-    fn touching_height<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+    fn touching_height<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S>) -> Pack<S> {
         -(part.own * self.lean(cos_tilt)) // (2)
     }
 
     #[inline(always)]
-    fn lever<S: Simd>(&self, part: &HullPart<S>, _: Pack<S, 1>) -> Pack<S, 1> {
+    fn lever<S: Simd>(&self, part: &HullPart<S>, _: Pack<S>) -> Pack<S> {
         part.own
     }
 
     #[inline(always)]
-    fn radius<S: Simd>(&self, part: &HullPart<S>, _: Pack<S, 1>) -> Pack<S, 1> {
+    fn radius<S: Simd>(&self, part: &HullPart<S>, _: Pack<S>) -> Pack<S> {
         let [one, two] = [self.balls[0].radius, self.balls[1].radius];
         if EQUAL {
             Pack::splat(part.own.simd(), 1.0)
@@ -178,7 +173,7 @@ impl<const TWO: bool, const EQUAL: bool> Hull for Balls<TWO, EQUAL> {
     }
 
     #[inline(always)]
-    fn curvature<S: Simd>(&self, part: &HullPart<S>, axis_motion: &AxisMotion<S, 1>) -> Pack<S, 1> {
+    fn curvature<S: Simd>(&self, part: &HullPart<S>, axis_motion: &AxisMotion<S>) -> Pack<S> {
         part.own.mul_add(axis_motion.acceleration, -1.0)
     }
 
@@ -186,15 +181,15 @@ impl<const TWO: bool, const EQUAL: bool> Hull for Balls<TWO, EQUAL> {
     fn derivatives<S: Simd>(
         &self,
         part: &HullPart<S>,
-        axis_motion: &AxisMotion<S, 1>,
-    ) -> [Pack<S, 1>; 3] {
+        axis_motion: &AxisMotion<S>,
+    ) -> [Pack<S>; 3] {
         let second = part.own * axis_motion.acceleration;
         let third = -(part.own * axis_motion.square) * axis_motion.rate;
         [second, third, -axis_motion.square * second]
     }
 
     #[inline(always)]
-    fn name<S: Simd>(&self, part: &HullPart<S>, _: Pack<S, 1>) -> Pack<S, 1> {
+    fn name<S: Simd>(&self, part: &HullPart<S>, _: Pack<S>) -> Pack<S> {
         if TWO {
             part.one.select(1.0, -1.0_f64)
         } else {

@@ -49,7 +49,7 @@ impl Oscillation {
     }
 
     /// At time 0.
-    fn axis_motion(&self) -> AxisMotion<Scalar, 1> {
+    fn axis_motion(&self) -> AxisMotion<Scalar> {
         let (sin, cos) = self.phase.sin_cos();
         AxisMotion {
             cos_tilt: one(self.cos_tilt(0.0)),

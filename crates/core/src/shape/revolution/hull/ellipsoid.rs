@@ -46,7 +46,7 @@ impl Ellipsoid {
 
     /// h, from h² = a²(1 − e_z²) + c²e_z²: a sum of positive terms, in which no digits cancel.
     #[inline(always)]
-    fn support<S: Simd>(&self, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+    fn support<S: Simd>(&self, cos_tilt: Pack<S>) -> Pack<S> {
         let a2 = self.equatorial * self.equatorial;
         let across = a2 * ((1.0 - cos_tilt) * (1.0 + cos_tilt)).max(0.0);
         let along = self.excess + a2; // c²
@@ -55,7 +55,7 @@ impl Ellipsoid {
 
     /// 1/h and h − a, the latter as De_z²/(h + a), which does not subtract nearly equal numbers; with one quotient for both.
     #[inline(always)]
-    fn profile<S: Simd>(&self, cos_tilt: Pack<S, 1>) -> [Pack<S, 1>; 2] {
+    fn profile<S: Simd>(&self, cos_tilt: Pack<S>) -> [Pack<S>; 2] {
         let support = self.support(cos_tilt);
         let sum = self.equatorial + support;
         let quotient = 1.0 / (support * sum);
@@ -67,13 +67,13 @@ impl Ellipsoid {
 
     /// 1/h.
     #[inline(always)]
-    fn inverse<S: Simd>(&self, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+    fn inverse<S: Simd>(&self, cos_tilt: Pack<S>) -> Pack<S> {
         self.profile(cos_tilt)[0]
     }
 
     /// h − a.
     #[inline(always)]
-    fn rise<S: Simd>(&self, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+    fn rise<S: Simd>(&self, cos_tilt: Pack<S>) -> Pack<S> {
         self.profile(cos_tilt)[1]
     }
 }
@@ -90,7 +90,7 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn ceiling<S: Simd>(&self, max_cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+    fn ceiling<S: Simd>(&self, max_cos_tilt: Pack<S>) -> Pack<S> {
         if self.excess > 0.0 {
             self.rise(max_cos_tilt.min(1.0))
         } else {
@@ -99,11 +99,7 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn curvature_bound<S: Simd>(
-        &self,
-        amplitude: Pack<S, 1>,
-        max_cos_tilt: Pack<S, 1>,
-    ) -> Pack<S, 1> {
+    fn curvature_bound<S: Simd>(&self, amplitude: Pack<S>, max_cos_tilt: Pack<S>) -> Pack<S> {
         let max_cos_tilt = (max_cos_tilt * (1.0 + 4.0 * f64::EPSILON)).min(1.0);
         if self.excess > 0.0 {
             self.excess / self.equatorial * (amplitude * max_cos_tilt)
@@ -113,7 +109,7 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn part<S: Simd>(&self, one: Mask<S, 1>) -> HullPart<S> {
+    fn part<S: Simd>(&self, one: Mask<S>) -> HullPart<S> {
         HullPart {
             one,
             own: Pack::splat(one.simd(), 0.0),
@@ -123,10 +119,10 @@ impl Hull for Ellipsoid {
     #[inline(always)]
     fn nearer<S: Simd>(
         &self,
-        _: Pack<S, 1>,
-        _: Pack<S, 1>,
-        axis_motion: &AxisMotion<S, 1>,
-        _: Pack<S, 1>,
+        _: Pack<S>,
+        _: Pack<S>,
+        axis_motion: &AxisMotion<S>,
+        _: Pack<S>,
     ) -> HullPart<S> {
         HullPart {
             one: Mask::splat(axis_motion.cos_tilt.simd(), true),
@@ -135,32 +131,27 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn gap<S: Simd>(
-        &self,
-        _: &HullPart<S>,
-        cos_tilt: Pack<S, 1>,
-        height: Pack<S, 1>,
-    ) -> Pack<S, 1> {
+    fn gap<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S>, height: Pack<S>) -> Pack<S> {
         height - self.rise(cos_tilt)
     }
 
     #[inline(always)]
-    fn touching_height<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+    fn touching_height<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S>) -> Pack<S> {
         self.rise(cos_tilt)
     }
 
     #[inline(always)]
-    fn lever<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+    fn lever<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S>) -> Pack<S> {
         (-self.excess * cos_tilt) * self.inverse(cos_tilt)
     }
 
     #[inline(always)]
-    fn radius<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+    fn radius<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S>) -> Pack<S> {
         self.equatorial * self.equatorial * self.inverse(cos_tilt)
     }
 
     #[inline(always)]
-    fn curvature<S: Simd>(&self, _: &HullPart<S>, axis_motion: &AxisMotion<S, 1>) -> Pack<S, 1> {
+    fn curvature<S: Simd>(&self, _: &HullPart<S>, axis_motion: &AxisMotion<S>) -> Pack<S> {
         let inverse = self.inverse(axis_motion.cos_tilt);
         let (e, v) = (axis_motion.cos_tilt, axis_motion.rate);
         let first = self.excess * (e * v) * inverse; // h′
@@ -172,8 +163,8 @@ impl Hull for Ellipsoid {
     fn derivatives<S: Simd>(
         &self,
         part: &HullPart<S>,
-        axis_motion: &AxisMotion<S, 1>,
-    ) -> [Pack<S, 1>; 3] {
+        axis_motion: &AxisMotion<S>,
+    ) -> [Pack<S>; 3] {
         let inverse = part.own;
         let (e, v, a) = (
             axis_motion.cos_tilt,
@@ -193,7 +184,7 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn name<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1> {
+    fn name<S: Simd>(&self, _: &HullPart<S>, cos_tilt: Pack<S>) -> Pack<S> {
         cos_tilt.lt(0.0).select(1.0, -1.0_f64)
     }
 }

@@ -63,10 +63,10 @@ pub struct Ball {
 #[derive(Clone, Copy)]
 pub(crate) struct HullPart<S: Simd> {
     /// True if it is sphere 1; ignored where only one part can touch.
-    pub one: Mask<S, 1>,
+    pub one: Mask<S>,
     /// The parameter of its gap besides e_z: the lever s of a sphere. For a smooth hull it is 1/h where [`Hull::nearer`] was asked for
     /// the part, which the derivatives there need again.
-    pub own: Pack<S, 1>,
+    pub own: Pack<S>,
 }
 
 lanewise! { HullPart<S> { one, own } }
@@ -74,15 +74,15 @@ lanewise! { HullPart<S> { one, own } }
 /// The vertical component of the axis, e_z, and its time derivatives. Since e_z = c + A cos(Ωt + φ), each derivative from the third
 /// on is −Ω² times the one two orders below.
 #[derive(Clone, Copy)]
-pub(crate) struct AxisMotion<S: Simd, const K: usize> {
+pub(crate) struct AxisMotion<S: Simd> {
     /// e_z.
-    pub cos_tilt: Pack<S, K>,
+    pub cos_tilt: Pack<S>,
     /// de_z/dt.
-    pub rate: Pack<S, K>,
+    pub rate: Pack<S>,
     /// d²e_z/dt².
-    pub acceleration: Pack<S, K>,
+    pub acceleration: Pack<S>,
     /// Ω².
-    pub square: Pack<S, K>,
+    pub square: Pack<S>,
 }
 
 /// The surface that can touch the plane. The contact search, the landing and the impact use no other property of it.
@@ -98,58 +98,46 @@ pub(crate) trait Hull: Copy {
     fn sharpness(&self) -> f64;
 
     /// Height above which no part can touch while |e_z| ≤ `max_cos_tilt`.
-    fn ceiling<S: Simd>(&self, max_cos_tilt: Pack<S, 1>) -> Pack<S, 1>;
+    fn ceiling<S: Simd>(&self, max_cos_tilt: Pack<S>) -> Pack<S>;
 
     /// A bound on |d²h/dt²|/Ω² for e_z = c + A cos(Ωt + φ): the contribution of rotation to the second derivative of a gap.
     /// `amplitude` is A, `max_cos_tilt` is |c| + A.
-    fn curvature_bound<S: Simd>(
-        &self,
-        amplitude: Pack<S, 1>,
-        max_cos_tilt: Pack<S, 1>,
-    ) -> Pack<S, 1>;
+    fn curvature_bound<S: Simd>(&self, amplitude: Pack<S>, max_cos_tilt: Pack<S>) -> Pack<S>;
 
     /// Sphere 1 where `one`, else sphere 2; the whole hull if it has only one part.
-    fn part<S: Simd>(&self, one: Mask<S, 1>) -> HullPart<S>;
+    fn part<S: Simd>(&self, one: Mask<S>) -> HullPart<S>;
 
     /// The part whose gap has the lower bound that reaches 0 first. `bound` is M: f″ ≥ −M for the gap f of either part.
     fn nearer<S: Simd>(
         &self,
-        height: Pack<S, 1>,
-        vz: Pack<S, 1>,
-        axis_motion: &AxisMotion<S, 1>,
-        bound: Pack<S, 1>,
+        height: Pack<S>,
+        vz: Pack<S>,
+        axis_motion: &AxisMotion<S>,
+        bound: Pack<S>,
     ) -> HullPart<S>;
 
     /// The gap f between a part and the plane, (2), negative where they overlap.
-    fn gap<S: Simd>(
-        &self,
-        part: &HullPart<S>,
-        cos_tilt: Pack<S, 1>,
-        height: Pack<S, 1>,
-    ) -> Pack<S, 1>;
+    fn gap<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S>, height: Pack<S>) -> Pack<S>;
 
     /// Height at which a part touches.
-    fn touching_height<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1>;
+    fn touching_height<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S>) -> Pack<S>;
 
     /// The lever s = −dh/de_z.
-    fn lever<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1>;
+    fn lever<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S>) -> Pack<S>;
 
     /// The radius ϱ = h − e_z dh/de_z of the sphere that touches like this part.
-    fn radius<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1>;
+    fn radius<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S>) -> Pack<S>;
 
     /// d²f/dt² = −1 − d²h/dt² of the gap f in free fall.
-    fn curvature<S: Simd>(&self, part: &HullPart<S>, axis_motion: &AxisMotion<S, 1>) -> Pack<S, 1>;
+    fn curvature<S: Simd>(&self, part: &HullPart<S>, axis_motion: &AxisMotion<S>) -> Pack<S>;
 
     /// −d²h/dt², −d³h/dt³ and −d⁴h/dt⁴ where [`Hull::nearer`] was asked for the part.
-    fn derivatives<S: Simd>(
-        &self,
-        part: &HullPart<S>,
-        axis_motion: &AxisMotion<S, 1>,
-    ) -> [Pack<S, 1>; 3];
+    fn derivatives<S: Simd>(&self, part: &HullPart<S>, axis_motion: &AxisMotion<S>)
+    -> [Pack<S>; 3];
 
     /// The end that a contact is recorded under, +1 or −1 for sphere 1 or 2; for a smooth hull, +1 if the half touches to which
     /// the axis points.
-    fn name<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S, 1>) -> Pack<S, 1>;
+    fn name<S: Simd>(&self, part: &HullPart<S>, cos_tilt: Pack<S>) -> Pack<S>;
 }
 
 /// The hull of a body.
