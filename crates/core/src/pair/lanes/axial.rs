@@ -9,7 +9,7 @@ use super::{
     MOST_LANES, NearestParts, Surfaces,
 };
 use crate::contact::{RoundPart, RoundParts, TurningAxis};
-use crate::math::{Quaternion, Quaternions, UNITS, Vector, Vectors};
+use crate::math::{Quaternion, Quaternions, UNITS, Vectors};
 use crate::pair::encounter::End;
 use crate::pair::partner::{FreeBody, Partner};
 use crate::shape::{Piece, PieceKind};
@@ -309,7 +309,7 @@ impl<S: Simd> LaneFlight<S> for AxialFlight<S> {
         let body = EndedRotation {
             attitude: Quaternions::splat(simd, Quaternion::IDENTITY),
             turned: Quaternions::splat(simd, Quaternion::IDENTITY),
-            precession: Vectors::splat(simd, Vector::default()),
+            precession: Vectors::none(simd),
             own: zero,
             time: zero,
         };
