@@ -10,8 +10,9 @@ from scipy import stats
 from restitution import fit
 from restitution.papers.claims import SIGNIFICANT, Finding, Measurement, Verdict, verdict
 from restitution.papers.estimate import Array, Index, in_windows, jackknife
+from restitution.papers.runs import Runs, derived_seed
+from restitution.papers.settings import AtSpeeds
 
-Windows = tuple[tuple[float, float], ...]
 RIVALS = (fit.gaussian, fit.logistic, fit.student_t)
 RESAMPLES = 499
 IN_TAILS = 100
@@ -65,21 +66,26 @@ LAPLACE_RULE = (
 )
 
 
-def shapes(data: xr.Dataset, windows: Windows, labels: Sequence[str], seed: int) -> list[Shape]:
-    """Measure the density of ε of a run in each window of impact velocity; the seed chooses the draws."""
-    impacts = in_windows(data["impact_velocity"], windows)
-    drawn = impacts.one_per_particle(seed)
-    every, some = (chosen.of(data["restitution"]) for chosen in (impacts, drawn))
-    return [
-        shape(
-            label,
-            every[impacts.cell == k],
-            impacts.where[0][impacts.cell == k],
-            some[drawn.cell == k],
-            seed,
-        )
-        for k, label in enumerate(labels)
-    ]
+def shapes(runs: Runs, data: xr.Dataset, settings: AtSpeeds, name: str) -> list[Shape]:
+    """Measure the density of ε at each speed, slowest first, once for all claims; `name` seeds the draws."""
+    seed = derived_seed(runs.seed, name)
+
+    def measure() -> list[Shape]:
+        impacts = in_windows(data["impact_velocity"], settings.speed_windows)
+        drawn = impacts.one_per_particle(seed)
+        every, some = (chosen.of(data["restitution"]) for chosen in (impacts, drawn))
+        return [
+            shape(
+                label,
+                every[impacts.cell == k],
+                impacts.where[0][impacts.cell == k],
+                some[drawn.cell == k],
+                seed,
+            )
+            for k, label in enumerate(settings.labels)
+        ]
+
+    return runs.once(name, measure)
 
 
 def shape(label: str, values: Array, particle: Index, independent: Array, seed: int) -> Shape:
@@ -129,6 +135,18 @@ def laplace(shapes: Sequence[Shape], why: str) -> Finding:
     verdicts = [one.verdict for one in shapes]
     holds = verdict(all(v == "holds" for v in verdicts), any(v != "fails" for v in verdicts))
     return Finding(tuple(measured), holds, LAPLACE_RULE, why)
+
+
+def slopes(shapes: Sequence[Shape], speeds: str, why: str, *exact: Measurement) -> Finding:
+    """Judge the claim that the two decay lengths differ at these speeds, which a text may fill into `why`."""
+    clear = [one.label for one in shapes if one.skewed]
+    return Finding(
+        (*(Measurement("ln(a/b)", *one.asymmetry, at=one.label) for one in shapes), *exact),
+        verdict(len(clear) == len(shapes), bool(clear)),
+        "a, b: decay lengths above and below the fitted cusp. Holds if ln(a/b) differs from 0 by more than "
+        f"{SIGNIFICANT:g} standard errors at {speeds}; in part if at some; fails otherwise.",
+        why.format(", ".join(clear) or "no speed"),
+    )
 
 
 def tests(one: Shape) -> tuple[Measurement, ...]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from restitution.papers.claims import SIGNIFICANT, Measurement, Verdict, verdict
+from restitution.papers.claims import SIGNIFICANT, Finding, Measurement, Verdict, listed, verdict
 from restitution.papers.estimate import Array, Estimate, Impacts, in_bins, settled_speed
 
 RISING_RULE = (
@@ -68,3 +68,26 @@ def falling(data: xr.Dataset, lowest: float, bins: int) -> Falling:
     edges = np.geomspace(max(lowest, settled_speed(data)), fastest * (1 + 1e-12), bins + 1)
     impacts = in_bins(data["impact_velocity"], edges)
     return Falling(impacts.regrouped(bins - 1 - impacts.cell, bins), np.sqrt(edges[1:] * edges[:-1])[::-1])
+
+
+def grows(
+    bins: Falling,
+    names: tuple[str, str],
+    found: Estimate,
+    every: int,
+    *exact: Measurement,
+    of: str = "",
+    ends: tuple[str, str] = ("", ""),
+) -> Finding:
+    """Judge whether what has these names, in a table and in a sentence, grows as the velocity falls.
+
+    The table has every so many bins; the sentence ends in one of two ways, where it grows throughout or not.
+    """
+    (name, what), course = names, trend(found)
+    return Finding(
+        (*listed(name, bins.labels[::every], found.take(slice(None, None, every))), *exact, course.step),
+        course.verdict,
+        f"{of}{len(bins.labels)} logarithmic bins of impact velocity, fastest first. {RISING_RULE}",
+        f"{what} goes from {found.value[0]:.2g} at {bins.labels[0]} to {found.value[-1]:.2g} at "
+        f"{bins.labels[-1]}{ends[not course.monotone]}.",
+    )

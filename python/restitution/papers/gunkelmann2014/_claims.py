@@ -1,20 +1,16 @@
 """Claims of PRE 90, 052204 and of the abstract of its ref. 10 about rough spheres, each sentence judged."""
 
-from collections.abc import Sequence
-from functools import partial
-
 import numpy as np
 import xarray as xr
 
 from restitution.figures.report import grouped
 from restitution.papers import shape
 from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
-from restitution.papers.estimate import Array, Estimate, deviations, in_windows, jackknife
+from restitution.papers.estimate import Array, deviations, in_windows, jackknife
 from restitution.papers.gunkelmann2014._runs import Runs
 from restitution.papers.gunkelmann2014._settings import Settings
-from restitution.papers.runs import derived_seed
-from restitution.papers.shape import Shape, shapes
-from restitution.papers.trend import RISING_RULE, Falling, falling, trend
+from restitution.papers.shape import Shape
+from restitution.papers.trend import falling, grows
 
 CLAIMS: Claims[Runs, Settings] = Claims()
 SPEED_BINS = 14
@@ -23,9 +19,7 @@ _MONTAINE = "abstract of ref. 10 (PRE 84, 041306)"
 
 def _shapes(runs: Runs, s: Settings, data: xr.Dataset) -> list[Shape]:
     """Return the densities at the four speeds, slowest first."""
-    name = f"shapes, {data.attrs['run']}"
-    seed = derived_seed(runs.seed, name)
-    return runs.once(name, partial(shapes, data, s.speed_windows, s.labels, seed))
+    return shape.shapes(runs, data, s, f"shapes, {data.attrs['run']}")
 
 
 @CLAIMS.add("non-gaussian", "non-trivial (non-Gaussian) fluctuations of the measured values", _MONTAINE)
@@ -62,21 +56,10 @@ def two_exponentials(runs: Runs, s: Settings) -> Finding:
 
 @CLAIMS.add("different-slope", "two exponential functions … of different slope", _MONTAINE)
 def different_slope(runs: Runs, s: Settings) -> Finding:
-    shapes = _shapes(runs, s, runs.main)
-    clear = [one.skewed for one in shapes]
     exact = [-2.0 * float(np.log(s.density(v).args[0])) for v in s.speeds]  # SciPy's parameter is √(b/a)
-    return Finding(
-        measured=(
-            *(Measurement("ln(a/b)", *one.asymmetry, at=one.label) for one in shapes),
-            *listed("ln(a/b) in closed form", s.labels, exact),
-        ),
-        verdict=verdict(all(clear), any(clear)),
-        rule="a, b: decay lengths above and below the fitted cusp. Holds if ln(a/b) differs from 0 by more "
-        f"than {SIGNIFICANT:g} standard errors at each speed; in part if at some; fails otherwise.",
-        why="The decay lengths differ at "
-        + (", ".join(one.label for one, c in zip(shapes, clear, strict=True) if c) or "no speed")
-        + "; b > a where the impact is fast against the rotation.",
-    )
+    why = "The decay lengths differ at {}; b > a where the impact is fast against the rotation."
+    closed = listed("ln(a/b) in closed form", s.labels, exact)
+    return shape.slopes(_shapes(runs, s, runs.main), "each speed", why, *closed)
 
 
 @CLAIMS.add(
@@ -111,26 +94,9 @@ def energy_transfer(runs: Runs, s: Settings) -> Finding:
 def scatter_grows(runs: Runs, s: Settings) -> Finding:
     bins = falling(runs.main, s.velocity_range[0], SPEED_BINS)
     sigma = bins.impacts.deviations(bins.impacts.of(runs.main["restitution"]))
-    exact = [float(s.density(v).std()) for v in bins.speeds]
-    return _grows(bins, ("σ(ε)", "σ(ε)"), sigma, exact)
-
-
-def _grows(
-    bins: Falling, names: tuple[str, str], found: Estimate, exact: Sequence[float], of: str = ""
-) -> Finding:
-    """Judge whether what has these names, in a table and in a sentence, grows as the velocity falls."""
-    (name, what), course, shown = names, trend(found), slice(None, None, 3)
-    return Finding(
-        measured=(
-            *listed(name, bins.labels[shown], found.take(shown)),
-            *listed(f"{name} in closed form", bins.labels[shown], exact[shown]),
-            course.step,
-        ),
-        verdict=course.verdict,
-        rule=f"{of}{SPEED_BINS} logarithmic bins of impact velocity, fastest first. {RISING_RULE}",
-        why=f"{what} goes from {found.value[0]:.2g} at {bins.labels[0]} to {found.value[-1]:.2g} at "
-        f"{bins.labels[-1]}.",
-    )
+    exact = [float(s.density(v).std()) for v in bins.speeds[::3]]
+    closed = listed("σ(ε) in closed form", bins.labels[::3], exact)
+    return grows(bins, ("σ(ε)", "σ(ε)"), sigma, 3, *closed)
 
 
 @CLAIMS.add("superelastic", "the coefficient of restitution may exceed unity", "Sec. III, there of dumbbells")
@@ -184,8 +150,10 @@ def independence(runs: Runs, s: Settings) -> Finding:
 def rotation_grows(runs: Runs, s: Settings) -> Finding:
     bins = falling(runs.main, s.velocity_range[0], SPEED_BINS)
     share = bins.impacts.means(bins.impacts.of(runs.main["rotational_fraction"]))
-    exact = [s.mean_share(v) for v in bins.speeds]
-    return _grows(bins, ("mean E_rot/E_tot", "The mean share"), share, exact, "The share E_rot/E_tot in ")
+    exact = [s.mean_share(v) for v in bins.speeds[::3]]
+    closed = listed("mean E_rot/E_tot in closed form", bins.labels[::3], exact)
+    names = "mean E_rot/E_tot", "The mean share"
+    return grows(bins, names, share, 3, *closed, of="The share E_rot/E_tot in ")
 
 
 @CLAIMS.add(

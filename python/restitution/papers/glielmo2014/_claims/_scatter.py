@@ -10,7 +10,7 @@ from restitution.papers.estimate import Estimate, deviations, in_bins
 from restitution.papers.glielmo2014._claims._energy import energies
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
-from restitution.papers.trend import RISING_RULE, falling, trend
+from restitution.papers.trend import RISING_RULE, falling, grows, trend
 
 CLAIMS: Claims[Runs, Settings] = Claims()
 SPEED_BINS = 15
@@ -123,18 +123,8 @@ def first_impact(runs: Runs, settings: Settings) -> Finding:
 def scatter_grows(runs: Runs, settings: Settings) -> Finding:
     bins = falling(runs.main, 1e-3, SPEED_BINS)
     sigma = bins.impacts.deviations(bins.impacts.of(runs.main["restitution"]))
-    found = trend(sigma)
-    shown = slice(None, None, 2)
-    return Finding(
-        measured=(
-            *listed("σ(ε)", bins.labels[shown], sigma.take(shown)),
-            found.step,
-        ),
-        verdict=found.verdict,
-        rule=f"{SPEED_BINS} logarithmic bins of impact velocity, fastest first. {RISING_RULE}",
-        why=f"σ(ε) goes from {sigma.value[0]:.2g} at {bins.labels[0]} to {sigma.value[-1]:.2g} at "
-        f"{bins.labels[-1]}, {'monotonically' if found.monotone else 'but does not rise at every step'}.",
-    )
+    ends = ", monotonically", ", but does not rise at every step"
+    return grows(bins, ("σ(ε)", "σ(ε)"), sigma, 2, ends=ends)
 
 
 @CLAIMS.add(

@@ -1,7 +1,5 @@
 """Claims on Fig. 4: the density of ε at given speed, and how successive impacts depend when slow."""
 
-from functools import partial
-
 import numpy as np
 
 from restitution.papers import shape
@@ -9,8 +7,7 @@ from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement,
 from restitution.papers.estimate import Array, Impacts, in_windows
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
-from restitution.papers.runs import derived_seed
-from restitution.papers.shape import Shape, shapes, tests
+from restitution.papers.shape import Shape, tests
 from restitution.papers.trend import falling
 
 CLAIMS: Claims[Runs, Settings] = Claims()
@@ -18,10 +15,8 @@ SLOW_BINS = 12
 
 
 def _shapes(runs: Runs, settings: Settings) -> list[Shape]:
-    """Return the shapes at the four speeds, slowest first, which three claims share."""
-    seed = derived_seed(runs.seed, "goodness of fit")
-    measure = partial(shapes, runs.main, settings.speed_windows, settings.labels, seed)
-    return runs.once("shapes", measure)
+    """Return the shapes at the four speeds, slowest first."""
+    return shape.shapes(runs, runs.main, settings, "goodness of fit")
 
 
 @CLAIMS.add(
@@ -41,18 +36,8 @@ def laplace(runs: Runs, settings: Settings) -> Finding:
 
 @CLAIMS.add("asymmetric", "(asymmetric Laplace function)", "Sec. III, Fig. 4")
 def asymmetric(runs: Runs, settings: Settings) -> Finding:
-    shapes = _shapes(runs, settings)[1:]
-    clear = [one.skewed for one in shapes]
-    return Finding(
-        measured=tuple(Measurement("ln(a/b)", *one.asymmetry, at=one.label) for one in shapes),
-        verdict=verdict(all(clear), any(clear)),
-        rule="a, b: decay lengths above and below the fitted cusp. Holds if ln(a/b) differs from 0 by more "
-        f"than {SIGNIFICANT:g} standard errors at each speed above the lowest; in part if at some; fails "
-        "otherwise.",
-        why="The decay lengths above and below the cusp differ at "
-        + (", ".join(s.label for s, c in zip(shapes, clear, strict=True) if c) or "no speed")
-        + ".",
-    )
+    why = "The decay lengths above and below the cusp differ at {}."
+    return shape.slopes(_shapes(runs, settings)[1:], "each speed above the lowest", why)
 
 
 @CLAIMS.add(
