@@ -20,8 +20,7 @@ from restitution.figures.report import Section, prose
 from restitution.papers import redraw as machinery
 from restitution.papers.claims import Claims, Finding, Measurement, verdict
 from restitution.papers.figures import Caption, PaperFigure, recorded
-from restitution.papers.misprints import Check, Misprint
-from restitution.papers.paper import Paper
+from restitution.papers.paper import Check, Misprint, Paper
 from restitution.papers.report import measured
 from restitution.papers.runs import Runner, Runs
 from restitution.papers.settings import Settings, chosen, stated

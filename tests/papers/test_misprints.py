@@ -10,9 +10,8 @@ import sympy as sp
 
 import restitution as rs
 from restitution.analytic import first_impact
-from restitution.papers.glielmo2014._checks import printed_density
-from restitution.papers.glielmo2014._misprints import MISPRINTS
-from restitution.papers.misprints import Misprint
+from restitution.papers.glielmo2014._misprints import MISPRINTS, printed_density
+from restitution.papers.paper import Misprint
 
 R, L, m, j, j_z, k, z = sp.symbols("R L m j j_z k z", positive=True)  # j = J_xx/m, j_z = J_zz/m, k = 1 + ε_n
 s = sp.symbols("s", real=True)

@@ -1,16 +1,36 @@
-"""Description of a paper, from which it is redrawn and judged."""
+"""Description of a paper, from which it is redrawn and judged, and of its misprints."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Generic
+from typing import Any, Generic, Literal, NamedTuple
 
 import xarray as xr
 
 from restitution.figures.report import Section
 from restitution.papers.claims import Claims, R, S
 from restitution.papers.figures import PaperFigure
-from restitution.papers.misprints import Misprint
 from restitution.papers.runs import DROPPED, Runner
+
+
+class Check(NamedTuple):
+    """Three numbers for one quantity; the last two agree."""
+
+    printed: float
+    right: float
+    independent: float
+
+
+@dataclass(frozen=True)
+class Misprint:
+    """A formula that disagrees with the paper's own model, with a proof and with numbers."""
+
+    equation: str  # the paper's label
+    kind: Literal["misprint", "caveat"]  # wrong, or of smaller range than it seems
+    printed: str
+    corrected: str
+    proof: str  # why the printed formula cannot be right
+    quantity: str  # what `check` calculates
+    check: Callable[[], Check]
 
 
 @dataclass(frozen=True)

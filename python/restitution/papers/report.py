@@ -9,8 +9,7 @@ from restitution.figures import report as html
 from restitution.figures.report import Section
 from restitution.papers.claims import SIGNIFICANT, Claim, Measurement, R, S, Verdict
 from restitution.papers.figures import SavedFigure
-from restitution.papers.misprints import Misprint
-from restitution.papers.paper import Paper
+from restitution.papers.paper import Misprint, Paper
 from restitution.papers.runs import Runs, is_counted
 from restitution.papers.settings import Settings
 

@@ -9,7 +9,7 @@ from restitution import analytic, fit
 from restitution._internal.arrays import FloatArray
 from restitution.drop.reduce import reduce, standard_errors
 from restitution.papers.figures import counted, recorded
-from restitution.papers.glielmo2014._checks import printed_density
+from restitution.papers.glielmo2014._misprints import printed_density
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 from restitution.papers.glielmo2014._windows import at_speeds, coarse, histogram_edges

@@ -1,10 +1,154 @@
 """Misprints in the paper: formulas that disagree with its own model.
 
-The other formulas (Eqs. 1, 4, 5, 7–13, 15–17, 20, 22, A1–A4, A6, A8) are right as printed.
+Of each, one quantity is found from the printed formula, from the corrected one, and without either. The other
+formulas (Eqs. 1, 4, 5, 7–13, 15–17, 20, 22, A1–A4, A6, A8) are right as printed.
 """
 
-from restitution.papers.glielmo2014 import _checks as checks
-from restitution.papers.misprints import Misprint
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
+
+from restitution.analytic import first_impact
+from restitution.bodies import Dumbbell
+from restitution.laws import TangentialRestitution
+from restitution.papers.paper import Check, Misprint
+
+Floats = NDArray[np.float64]
+
+# The paper's own example (Fig. 9), L = 2R. With R = 1 and ρ = 1/π, J is the bracket in Eqs. A5 and A8.
+BODY = Dumbbell(radius=1.0, separation=2.0, density=1.0 / np.pi)
+LAW = TangentialRestitution(normal=0.4, tangential=1.0)
+TILT = np.pi / 3
+
+
+def printed_density(restitution: ArrayLike, body: Dumbbell, law: TangentialRestitution) -> Floats:
+    """Eq. 21 with Eq. 22 as printed, misprints included: to be compared with `restitution.analytic`, no more.
+
+    It is 0 outside the support of Eq. 17, and nan for nan.
+    """
+    value = np.asarray(restitution, dtype=np.float64)
+    low, high = first_impact(body, law).support()
+    s = np.clip(value, low, high)
+    radius, length, normal = body.radii[0], body.separation, law.constant
+    inertia = body.transverse_inertia / body.mass
+    k = 1.0 + normal
+    f = np.sqrt(
+        4.0 * (s - normal) * ((s + 1.0) * radius**2 + k * inertia) + k * (s + 1.0) * length**2
+    )  # (22)
+    bracket = 0.5 * k * (4.0 * inertia + length**2) + 4.0 * radius**2 * (2.0 * s - normal + 1.0)
+    cosine = (2.0 * radius * (s - normal) + f) / (k * length)
+    sine = np.sqrt(np.maximum(1.0 - cosine**2, 0.0))
+    with np.errstate(divide="ignore"):
+        density = (2.0 * radius * f + bracket) / (np.pi * f * k * length * sine)  # (21)
+    return np.where((value < low) | (value > high), 0.0, density)
+
+
+def fall(theta: float) -> Floats:
+    """Solve Eq. 10, three linear equations, for P/m of a body that arrives at 1 m/s without spin."""
+    axis = np.array([np.sin(theta), 0.0, -np.cos(theta)])  # of the lower sphere (Fig. 8, Eq. 16)
+    up = np.array([0.0, 0.0, 1.0])
+    contact = 0.5 * BODY.separation * axis - BODY.radius * up
+    along = np.outer(axis, axis)
+    inertia = (BODY.transverse_inertia * (np.eye(3) - along) + BODY.axial_inertia * along) / BODY.mass
+    columns = [
+        unit + np.cross(np.linalg.solve(inertia, np.cross(contact, unit)), contact) for unit in np.eye(3)
+    ]
+    return np.asarray(np.linalg.solve(np.transpose(columns), (1.0 + LAW.constant) * up), dtype=np.float64)
+
+
+def axial_inertia() -> Check:
+    """Return J_zz/(πρR⁵) at L = 2R (Eq. A5)."""
+
+    def bracket(divisor: float) -> float:
+        return 8 / 15 + 2 / 2 - 2**3 / 12 + 2**5 / divisor
+
+    sphere = 4 / 3
+    return Check(bracket(180), bracket(160), 2 * 2 / 5 * sphere)
+
+
+def transverse_inertia() -> Check:
+    """Return J_xx/(πρR⁵) at L = 2R from the integrand of Eq. A7."""
+    nodes, weights = np.polynomial.legendre.leggauss(3)  # exact up to degree 5
+    z = 1 + nodes  # 0 <= z <= R + L/2
+    tail = (2 + 2**2 / 2) * z**2 + 2 * 2 * z**3 - 3 * z**4
+    printed = (1 / 2 - 2**2 / 8) ** 2 + (2 * 2 * z**2 - 2**3 / 2) * z + tail
+    right = ((1 - 2**2 / 4) ** 2 + (2 * 2 - 2**3 / 2) * z + tail) / 2
+    sphere = 4 / 3
+    steiner = 2 * sphere * (2 / 5 + 1)
+    return Check(float(weights @ printed), float(weights @ right), steiner)
+
+
+def normal_impulse() -> Check:
+    """Return P·n/(m|v_G|) at θ = 60° (Eq. 14)."""
+    inertia = BODY.transverse_inertia / BODY.mass
+    x, z = BODY.separation / 2 * np.sin(TILT), -BODY.separation / 2 * np.cos(TILT) - BODY.radius  # (16)
+    factor = (1 + LAW.constant) * (inertia + z**2) / (x**2 + z**2 + inertia)
+    approach = -1.0  # v_G·n
+    return Check(float(factor * approach), float(-factor * approach), float(fall(TILT)[2]))
+
+
+def cumulative_probability() -> Check:
+    """Return the probability that |cos θ| <= 1/2 (Eq. 18)."""
+    angles = np.pi * (np.arange(300_000) + 0.5) / 300_000
+    part = np.arccos(0.5) / np.pi
+    return Check(float(1 - part), float(1 - 2 * part), float(np.mean(np.abs(np.cos(angles)) <= 0.5)))
+
+
+def total_probability() -> Check:
+    """Return the integral of Eq. 19 over 0 <= cos θ <= 1."""
+    # The weight is (1 - s)^(-1/2).
+    integral, _ = quad(lambda s: 1 / np.sqrt(1 + s), 0, 1, weight="alg", wvar=(0, -0.5))
+    return Check(integral / np.pi, 2 * integral / np.pi, 1.0)
+
+
+def negative_restitution() -> Check:
+    """Return the probability that ε < 0 for Fig. 9 (Eq. 21)."""
+    distribution = first_impact(BODY, LAW)
+    low, _ = distribution.support()
+    printed, _ = quad(lambda s: float(printed_density(s, BODY, LAW)), low, 0)
+    right, _ = quad(lambda s: float(distribution.pdf(s)), low, 0)
+    # ε = -1 + P·n/(m|v_G|) (13) falls from ε_n as the axis leans; beyond this angle it is negative.
+    zero = brentq(lambda theta: fall(theta)[2] - 1, 0, np.pi / 2, xtol=1e-14)
+    return Check(printed, right, 1 - float(zero) / (np.pi / 2))
+
+
+def spinning_flight() -> Check:
+    """Return the height e_z of the axis' end 0.1 s after e = (1, 0, 0), ω = (10, -10, 0) rad/s (Eq. 3)."""
+    axis, spin, time = np.array([1.0, 0.0, 0.0]), np.array([10.0, -10.0, 0.0]), 0.1
+    inertia = np.array([BODY.axial_inertia, BODY.transverse_inertia, BODY.transverse_inertia])
+
+    def turned(rotation: Floats) -> float:  # (3), (4)
+        angle = np.linalg.norm(rotation)
+        unit = rotation / angle
+        end = axis * np.cos(angle) + unit * (unit @ axis) * (1 - np.cos(angle))
+        return float((end + np.cross(unit, axis) * np.sin(angle))[2])
+
+    def euler(_: float, state: Floats) -> Floats:  # spin along the body's axes, and these axes in space
+        omega, frame = state[:3], state[3:].reshape(3, 3)
+        torque_free = np.cross(inertia * omega, omega) / inertia
+        return np.concatenate([torque_free, np.cross(omega @ frame, frame).ravel()])
+
+    start = np.concatenate([spin, np.eye(3).ravel()])
+    end = solve_ivp(euler, (0, time), start, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    return Check(turned(spin * time), turned(inertia * spin * time / inertia[1]), float(end[5]))
+
+
+def released_axis() -> Check:
+    """Return the cosine of the axis at the first impact after release from rest at θ = 60° (Eqs. 2, 3)."""
+    unit_matrix = np.eye(3)  # (3) at ω = 0
+    upright, released = np.array([0.0, 0.0, 1.0]), np.array([np.sin(TILT), 0.0, np.cos(TILT)])
+    return Check(float((unit_matrix @ upright)[2]), float((unit_matrix @ released)[2]), 0.5)
+
+
+def contact_height() -> Check:
+    """Return the height of the point r_G + r_c, in R, when the sphere at -r touches at θ = 60° (Eq. 6)."""
+    offset = BODY.separation / 2 * np.cos(TILT)
+    centre = BODY.radius + offset  # (2), second line
+    polar = np.linspace(0, np.pi, 1001)
+    lowest = min(np.min(centre + side * offset + BODY.radius * np.cos(polar)) for side in (1, -1))
+    return Check(float(centre + offset - BODY.radius), float(centre - offset - BODY.radius), float(lowest))
+
 
 MISPRINTS = (
     Misprint(
@@ -16,7 +160,7 @@ MISPRINTS = (
         "upright; Sec. III releases it at random orientation. The turn starts at τᵢ, from the "
         "orientation at τᵢ.",
         quantity="cos θ at the first impact, released from rest at θ = 60°",
-        check=checks.released_axis,
+        check=released_axis,
     ),
     Misprint(
         equation="3",
@@ -28,7 +172,7 @@ MISPRINTS = (
         "Λ with it, unless Λ is parallel to ω. From rest, ω stays perpendicular to the axis under the "
         "paper's law, so that the paper's results are not touched.",
         quantity="e_z of the axis after 0.1 s, L = 2R, from e = (1, 0, 0), ω = (10, −10, 0) rad/s",
-        check=checks.spinning_flight,
+        check=spinning_flight,
     ),
     Misprint(
         equation="6",
@@ -38,7 +182,7 @@ MISPRINTS = (
         proof="The contact point lies in the plane. With the other sphere touching, [r_G − Âr]_z = R, so that"
         " the printed r_G + r_c is 2[Âr]_z above it.",
         quantity="height of the contact point in R, L = 2R, sphere at −r touching at θ = 60°",
-        check=checks.contact_height,
+        check=contact_height,
     ),
     Misprint(
         equation="14",
@@ -48,7 +192,7 @@ MISPRINTS = (
         proof="The bracket is v_c·n, negative in an approach, and the last component is positive: as printed,"
         " the plane would pull. Eq. 15 follows from Eq. 13 only with the minus sign.",
         quantity="P·n/(m|v_G|) from rest, L = 2R, ε_n = 0.4, θ = 60°",
-        check=checks.normal_impulse,
+        check=normal_impulse,
     ),
     Misprint(
         equation="18",
@@ -58,7 +202,7 @@ MISPRINTS = (
         proof="Each of the two intervals in the braces has length arccos s, so the sum is (2/π) arccos s. "
         "They are the angles with |cos θ| > s: the lower sphere touches, and only |cos θ| counts.",
         quantity="P(|cos θ| ≤ 1/2)",
-        check=checks.cumulative_probability,
+        check=cumulative_probability,
     ),
     Misprint(
         equation="19",
@@ -69,7 +213,7 @@ MISPRINTS = (
         "and has one inverse, on 0 ≤ s ≤ 1, for |cos θ|, which is what the braces of Eq. 18 are about: "
         "there it integrates to 1/2.",
         quantity="∫ p(s) ds over 0 ≤ s ≤ 1",
-        check=checks.total_probability,
+        check=total_probability,
     ),
     Misprint(
         equation="21",
@@ -81,7 +225,7 @@ MISPRINTS = (
         "Eq. 22. The factor 2 in front is that of Eq. 19. For L = 2R and ε_n = 0.4 the printed density "
         "integrates to 0.580.",
         quantity="P(ε < 0), L = 2R, ε_n = 0.4",
-        check=checks.negative_restitution,
+        check=negative_restitution,
     ),
     Misprint(
         equation="A5",
@@ -90,7 +234,7 @@ MISPRINTS = (
         corrected="J_zz = πρ(8/15 R⁵ + 1/2 R⁴L − 1/12 R²L³ + 1/160 L⁵)",
         proof="The last term of πρ∫ϱ⁴dz is L⁵/(5·2⁵). At L = 2R, J_zz must be that of two touching spheres.",
         quantity="J_zz/(πρR⁵) at L = 2R",
-        check=checks.axial_inertia,
+        check=axial_inertia,
     ),
     Misprint(
         equation="A7",
@@ -101,7 +245,7 @@ MISPRINTS = (
         "formula: the factor ½, the square and 2LR² (printed as 2Lz²) must be corrected. Eq. A8 is the "
         "integral of Eq. A6, not of Eq. A7 as printed.",
         quantity="J_xx/(πρR⁵) at L = 2R",
-        check=checks.transverse_inertia,
+        check=transverse_inertia,
     ),
 )
 """In the order of the paper."""

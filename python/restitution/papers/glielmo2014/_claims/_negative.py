@@ -9,7 +9,7 @@ from restitution._internal.text import with_error
 from restitution.analytic import first_impact
 from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
 from restitution.papers.estimate import blocks, in_bins, in_blocks
-from restitution.papers.glielmo2014._checks import printed_density
+from restitution.papers.glielmo2014._misprints import printed_density
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 from restitution.papers.trend import RISING_RULE, falling, trend
