@@ -12,7 +12,6 @@ from restitution.papers.figures import counted, recorded
 from restitution.papers.glielmo2014._misprints import printed_density
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
-from restitution.papers.glielmo2014._windows import at_speeds, coarse, histogram_edges
 from restitution.papers.histograms import binned, density, design_effect, in_window, mesh
 
 QUANTILES = (0.01, 0.5, 0.99)
@@ -34,14 +33,17 @@ def slow(runs: Runs, s: Settings) -> xr.Dataset:
 def restitution_histograms(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 4: density of restitution at each speed with its asymmetric Laplace fit to recorded impacts."""
     parts = []
-    windows = zip(at_speeds(runs.windows), s.speed_windows, s.histogram_widths, strict=True)
+    windows = zip(_at_speeds(runs), s.speed_windows, s.histogram_widths, strict=True)
     for found, window, width in windows:
         particle, values = in_window(runs.main, "restitution", window)
-        edges = histogram_edges(s, width)
+        edges = s.histogram_edges(width)
         fitted = fit.asymmetric_laplace(values)
         # The cusp itself is among the points, so that the curve does not cut it off.
         points = np.sort(np.append(np.linspace(edges[0], edges[-1], 400), fitted.parameters["location"]))
-        count = coarse(found["restitution_count"].to_numpy(), s, width)
+        together = round(width / s.finest)  # bins that are counted to one that is drawn
+        half, middle = s.histogram_bins // 2 * together, found.sizes["restitution"] // 2
+        fine = found["restitution_count"].to_numpy()[middle - half : middle + half]
+        count = fine.reshape(-1, together).sum(axis=1)
         part = density(count, int(found["number"]), edges, design_effect(particle, values, edges))
         part["fit_point"] = ("point", points)
         part["fit_density"] = ("point", fitted.pdf(points))
@@ -56,7 +58,7 @@ def fraction_histograms(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 5: density of E_rot/E_tot at each speed."""
     edges = mesh(*s.fraction_range, s.fraction_mesh)
     parts = []
-    for found, window in zip(at_speeds(runs.windows), s.speed_windows, strict=True):
+    for found, window in zip(_at_speeds(runs), s.speed_windows, strict=True):
         together = design_effect(*in_window(runs.main, "rotational_fraction", window), edges)
         count = found["fraction_count"].to_numpy()
         parts.append(density(count, int(found["number"]), edges, together))
@@ -121,6 +123,11 @@ def deviation_sensitivity(runs: Runs, s: Settings) -> xr.Dataset:
 
 def _varied(runs: Runs, elongation: float) -> list[xr.Dataset]:
     return [pair[elongation] for by in (runs.by_radius, runs.by_height) for pair in by.values()]
+
+
+def _at_speeds(runs: Runs) -> list[xr.Dataset]:
+    """Return what was counted in the window of each speed."""
+    return [runs.windows.isel(velocity=k) for k in range(0, runs.windows.sizes["velocity"], 2)]
 
 
 def _by_speed(parts: list[xr.Dataset], s: Settings) -> xr.Dataset:

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from math import ceil
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import FloatArray
 from restitution.papers import runs
-from restitution.papers.glielmo2014 import _windows as windows
 from restitution.papers.glielmo2014._settings import Settings
 from restitution.papers.histograms import mesh
 from restitution.papers.runs import Runner
@@ -33,7 +33,7 @@ class Runs(runs.Runs):
     # The ensembles that `main` and `beads` are the first particles of, counted in the bins of
     lattice: xr.Dataset  # Figs. 2 and 3
     slow: xr.Dataset  # Fig. 7
-    windows: xr.Dataset  # Figs. 4 and 5, put together from one lattice
+    windows: xr.Dataset  # Figs. 4 and 5, one lattice for all speeds: every other bin is a window
     beads_counted: Mapping[float, xr.Dataset]  # Fig. 6, by L/R
 
 
@@ -91,6 +91,8 @@ def simulate(s: Settings, impacts: int, runner: Runner) -> Runs:
         mesh(*s.low_velocity_range, s.velocity_mesh),
         mesh(*s.low_restitution_range, s.restitution_mesh),
     )
+    # Every other bin of velocity is a window; those of restitution are fine enough for all histograms.
+    fine = s.histogram_edges(s.finest, round(max(s.histogram_widths) / s.finest))
     deviations = mesh(*s.deviation_range, s.deviation_mesh)
     return Runs(
         seed=runner.seed,
@@ -104,6 +106,6 @@ def simulate(s: Settings, impacts: int, runner: Runner) -> Runs:
         by_height={h: pair(f"height {h:g} m", release_height=h) for h in s.heights},
         lattice=count(main, s.elongation, s.mean_impacts, mesh(*s.velocity_range, s.velocity_mesh), drawn),
         slow=count(main, s.elongation, s.mean_impacts, *slow),
-        windows=count(main, s.elongation, s.mean_impacts, *windows.lattice(s)),
+        windows=count(main, s.elongation, s.mean_impacts, np.ravel(s.speed_windows), fine),
         beads_counted={x: count(data, x, few, deviations, drawn) for x, data in beads.items()},
     )

@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from restitution._internal.arrays import FloatArray
 from restitution.bodies import Dumbbell
 from restitution.laws import TangentialRestitution
 from restitution.papers import settings
@@ -88,6 +91,16 @@ class Settings(AtSpeeds, settings.Settings):
     def first_law(self) -> TangentialRestitution:
         """The law of Fig. 9 (Eq. 9)."""
         return TangentialRestitution(normal=self.first_normal, tangential=self.tangential)
+
+    @property
+    def finest(self) -> float:
+        """Largest step of which all `histogram_widths` are multiples, if all are whole millionths."""
+        return float(np.gcd.reduce(np.rint(1e6 * np.array(self.histogram_widths)).astype(np.int64))) / 1e6
+
+    def histogram_edges(self, width: float, times: int = 1) -> FloatArray:
+        """Return edges of bins of this width, so many times those of Fig. 4, half on either side of ε_n."""
+        half = self.histogram_bins // 2 * times
+        return self.normal + width * np.arange(-half, half + 1, dtype=np.float64)
 
     @property
     def rolling(self) -> float:
