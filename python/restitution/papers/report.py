@@ -52,7 +52,7 @@ def report(
     return html.page(paper.title, _heading(paper, claims, runs, source), sections, source, contents=True)
 
 
-def number(value: float, error: float | None) -> str:
+def number(value: float, error: float | None = None) -> str:
     """Write a number with its standard error as HTML."""
     return html.prose(with_error(float(value), None if error is None else float(error)))
 
