@@ -127,19 +127,15 @@ def reservoir(runs: Runs, settings: Settings) -> Finding:
     windows = in_windows(data["impact_velocity"], settings.speed_windows[1:])
     fraction = windows.of(data["rotational_fraction"])
     edges = np.array([0.005, 0.01, 0.02, 0.04, 0.08])
-    band = np.searchsorted(edges, fraction, side="right") - 1
-    inside = windows.only((band >= 0) & (band < edges.size - 1))
-    bands, speeds = edges.size - 1, windows.cells
-    cells = inside.regrouped(inside.cell * bands + band[(band >= 0) & (band < bands)], speeds * bands)
+    band, bands = np.searchsorted(edges, fraction, side="right") - 1, edges.size - 1
+    cells = windows.regrouped(windows.cell * bands + band, windows.cells * bands)
+    cells = cells.only((band >= 0) & (band < bands))
     sigma = cells.deviations(cells.of(data["restitution"]))
     alone = windows.deviations(windows.of(data["restitution"]))
     ratio = float(alone.value[0] / alone.value[-1])
-    within, compared = 1.0, False
-    for k in range(bands):
-        known = sigma.value[k::bands][sigma.number[k::bands] >= FEWEST]
-        if known.size > 1:
-            compared = True
-            within = max(within, float(known.max() / known.min()))
+    known = [sigma.value[k::bands][sigma.number[k::bands] >= FEWEST] for k in range(bands)]
+    factors = [float(one.max() / one.min()) for one in known if one.size > 1]
+    within, compared = max(factors, default=1.0), bool(factors)
     explained = 1.0 - math.log(within) / math.log(max(ratio, 1.0 + 1e-9))
     names = [
         f"{v:g} m/s, E_rot/E_tot from {a:g} to {b:g}" for v in settings.speeds[1:] for a, b in pairwise(edges)
