@@ -1,7 +1,6 @@
 """Densities of impacts in bins, with errors in which each particle is one draw."""
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.arrays import FloatArray, IntArray
@@ -27,7 +26,8 @@ def design_effect(particle: IntArray, values: FloatArray, edges: FloatArray) -> 
     and 1 where there are none.
     """
     size = edges.size - 1
-    bins, inside = binned(values, edges)
+    bins = np.searchsorted(edges, values, side="right") - 1
+    inside = (bins >= 0) & (bins < size)
     cell, each = np.unique(particle[inside] * size + bins[inside], return_counts=True)
     drawn = np.bincount(particle)
     weights = (each, each**2, each * drawn[cell // size])
@@ -36,12 +36,6 @@ def design_effect(particle: IntArray, values: FloatArray, edges: FloatArray) -> 
     scatter = squares - 2 * share * mixed + share**2 * np.sum(drawn**2)
     # Rounding may carry it below zero where every impact is in the bin.
     return np.divide(np.maximum(scatter, 0.0), single, out=np.ones(size), where=single > 0)
-
-
-def binned(values: FloatArray, edges: FloatArray) -> tuple[IntArray, npt.NDArray[np.bool_]]:
-    """Find the half-open bin of each value, and whether there is one."""
-    bins = np.searchsorted(edges, values, side="right").astype(np.int64) - 1
-    return bins, (bins >= 0) & (bins < edges.size - 1)
 
 
 def density(count: IntArray, number: int, edges: FloatArray, together: FloatArray | float) -> xr.Dataset:

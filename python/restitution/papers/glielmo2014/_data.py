@@ -8,11 +8,12 @@ import xarray as xr
 from restitution import analytic, fit
 from restitution._internal.arrays import FloatArray
 from restitution.drop.reduce import reduce, standard_errors
+from restitution.papers.estimate import in_bins
 from restitution.papers.figures import counted, recorded
 from restitution.papers.glielmo2014._misprints import printed_density
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
-from restitution.papers.histograms import binned, density, design_effect, in_window, mesh
+from restitution.papers.histograms import density, design_effect, in_window, mesh
 
 QUANTILES = (0.01, 0.5, 0.99)
 """Quantiles of restitution in the sensitivity figure of Fig. 2."""
@@ -82,9 +83,8 @@ def first_impact(runs: Runs, s: Settings) -> xr.Dataset:
     edges = high - step * np.arange(np.ceil((high - low) / step), -0.5, -1)
     edges[0], edges[-1] = low - 1e-12, high + 1e-12
     values = runs.first["restitution"].to_numpy().ravel()
-    bins, inside = binned(values, edges)
     # One impact a particle: all are independent.
-    drawn = density(np.bincount(bins[inside], minlength=edges.size - 1), values.size, edges, 1.0)
+    drawn = density(np.histogram(values, edges)[0], values.size, edges, 1.0)
     # Even steps of the angle crowd where the density diverges, at the upper end.
     points = exact.ppf(np.linspace(0.0, 1.0, 1002)[1:-1])
     drawn["point"] = ("point", points)
@@ -167,11 +167,11 @@ def _deviations(
 
 
 def _quantiles(data: xr.Dataset, edges: FloatArray) -> xr.Dataset:
-    velocity, restitution = (data[name].to_numpy().ravel() for name in ("impact_velocity", "restitution"))
-    bins, _ = binned(velocity, edges)
-    found = np.full((len(QUANTILES), edges.size - 1), np.nan)
-    for k in range(edges.size - 1):
-        values = restitution[bins == k]
+    impacts = in_bins(data["impact_velocity"], edges)
+    restitution = impacts.of(data["restitution"])
+    found = np.full((len(QUANTILES), impacts.cells), np.nan)
+    for k in range(impacts.cells):
+        values = restitution[impacts.cell == k]
         if values.size >= _FEWEST_FOR_QUANTILES:
             found[:, k] = np.quantile(values, QUANTILES)
     return xr.Dataset(

@@ -12,7 +12,7 @@ from restitution.papers.estimate import Array, Estimate, Impacts
 from restitution.papers.figures import counted, recorded
 from restitution.papers.gunkelmann2014._runs import Runs
 from restitution.papers.gunkelmann2014._settings import Settings
-from restitution.papers.histograms import binned, density, design_effect, in_window
+from restitution.papers.histograms import density, design_effect, in_window
 from restitution.papers.trend import falling
 
 
@@ -27,8 +27,7 @@ def densities(runs: Runs, s: Settings) -> xr.Dataset:
     for speed, window in zip(s.speeds, s.speed_windows, strict=True):
         particle, values = in_window(runs.main, "restitution", window)
         edges = s.normal + 6.0 * values.std() * np.linspace(-1.0, 1.0, s.histogram_bins + 1)
-        bins, inside = binned(values, edges)
-        count = np.bincount(bins[inside], minlength=edges.size - 1)
+        count, _ = np.histogram(values, edges)
         part = density(count, values.size, edges, design_effect(particle, values, edges))
         fitted = fit.asymmetric_laplace(values)
         points = np.sort(np.append(np.linspace(edges[0], edges[-1], 400), fitted.parameters["location"]))
@@ -44,11 +43,7 @@ def densities(runs: Runs, s: Settings) -> xr.Dataset:
 
 def deviations(runs: Runs, s: Settings) -> xr.Dataset:
     """Return σ against impact velocity, by number and by mean height, and the closed forms."""
-
-    def closed(speed: float, contact: RoughContact) -> float:
-        return float(s.density(speed, contact).std())
-
-    return _curves(runs, s, "restitution", Impacts.deviations, closed)
+    return _curves(runs, s, "restitution", Impacts.deviations, lambda v, at: float(s.density(v, at).std()))
 
 
 def rotation(runs: Runs, s: Settings) -> xr.Dataset:
