@@ -19,7 +19,7 @@ import restitution as rs
 from restitution.bodies import Body, RigidBody
 from restitution.figures.scene import _grain as grain
 from restitution.figures.scene._impact import Sideview
-from restitution.figures.scene._solid import contact_point, picture, reach
+from restitution.figures.scene._solid import contact_point, picture
 from restitution.figures.scene._vectors import CONTACT, IMPULSE, ROTATION, VELOCITY
 from restitution.figures.style import COLORS, ON_DARK, Style
 
@@ -44,7 +44,7 @@ def test_the_marked_point_touches_and_obeys_the_law(body: Body, spin: tuple[floa
     data = states(body, spin=spin)
     for particle in range(3):
         for one in Sideview.of(data, particle, 0, int(data["impacts"][particle]) - 1, name="impacts").impacts:
-            assert abs(one.contact[1]) < 1e-11 * reach(body) * 1e3
+            assert abs(one.contact[1]) < 1e-11 * body.compiled.farthest() * 1e3
             arm = one.contact - one.centre
             before, after = (
                 (v + np.cross(w, arm))[1] for v, w in zip(one.velocity, one.rotation, strict=True)
@@ -58,7 +58,7 @@ def test_a_body_is_as_large_in_its_picture_as_it_is(name: str, tilt: float) -> N
     """Areas of the outlines in closed form, for an axis that leans towards the reader by `tilt`."""
     body = BODIES[name]
     cover = picture(body, np.array([math.cos(tilt), 0.0, math.sin(tilt)]))[..., 3]
-    side = 2.1 * reach(body) / cover.shape[0]
+    side = 2.1 * body.compiled.farthest() / cover.shape[0]
     match body:
         case rs.Spheroid(equatorial=a, polar=c):
             area = math.pi * a * math.hypot(c * math.cos(tilt), a * math.sin(tilt))
@@ -217,7 +217,7 @@ def test_a_film_is_in_its_style(style: Style | None) -> None:
     """The ground is that of the style, all words are inside, and no colour of an arrow is lost in a GIF."""
     film = rs.figures.animate(states(BODIES["dumbbell"]), 1, 2, style=style)
     dark = style is not None and style.endswith("-dark")
-    still = film._still()
+    still = max(k for k, one in enumerate(film._frames) if one.impact is not None)
     figure = film.picture(still)
     for text in figure.texts:
         box = text.get_window_extent()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -156,13 +157,9 @@ class Film:
 
     def _images(self) -> list[Image.Image]:
         images: list[Image.Image] = []
-        last: tuple[Any, ...] | None = None
         for number, one in enumerate(self._frames):
-            if (one.time, one.impact, one.before) == last:
-                images.append(images[-1])
-                continue
-            last = (one.time, one.impact, one.before)
-            images.append(self._image(number, style=self._style))
+            again = number > 0 and one == self._frames[number - 1]
+            images.append(images[-1] if again else self._image(number, style=self._style))
         return images
 
     @styled
@@ -175,15 +172,11 @@ class Film:
 
     def _gif(self) -> bytes:
         images = self._images()
-        palette = self._palette([images[0], images[self._still()], images[-1]], style=self._style)
-        shown: list[Image.Image] = []
-        durations: list[int] = []
-        for k, image in enumerate(images):
-            if k and image is images[k - 1]:
-                durations[-1] += _DURATION
-            else:
-                shown.append(image.quantize(palette=palette, dither=Image.Dither.NONE))
-                durations.append(_DURATION)
+        still = max(k for k, one in enumerate(self._frames) if one.impact is not None)
+        palette = self._palette([images[0], images[still], images[-1]], style=self._style)
+        alike = [list(some) for _, some in groupby(images, key=id)]
+        shown = [some[0].quantize(palette=palette, dither=Image.Dither.NONE) for some in alike]
+        durations = [_DURATION * len(some) for some in alike]
         content = io.BytesIO()
         shown[0].save(
             content, "GIF", save_all=True, append_images=shown[1:], duration=durations, loop=0, optimize=True
@@ -201,9 +194,6 @@ class Film:
         for k, color in enumerate(colors()):  # or those of small things would be lost
             sheet.paste(color, (k * _SWATCH, height * len(chosen), (k + 1) * _SWATCH, sheet.height))
         return sheet.quantize(96, dither=Image.Dither.NONE)
-
-    def _still(self) -> int:
-        return [k for k, one in enumerate(self._frames) if one.impact is not None][-1]
 
     def _save_mp4(self, path: Path) -> None:
         import subprocess
@@ -225,17 +215,17 @@ class Film:
         figure, [[axes]] = panels(COLUMN, _HEIGHT)
         figure.set_layout_engine("none")
         axes.set_position((0.02, 0.02, 0.96, 0.80))
-        draw.bare(axes)
-        far, centre = 1e3 * solid.reach(view.body), self._centres[frame]
+        far, centre = view.reach, self._centres[frame]
         half, top = self._window()
-        draw.plane(axes, centre[0], half, 0.5 * far)
+        draw.stage(axes, centre[0], half, 0.5 * far, (-far, top))
         draw.scale_bar(axes, centre[0] - 0.95 * half, -0.75 * far, 2.0 * far)
         axes.plot(
             *self._centres[: frame + 1].T, color=ink(0.45), linewidth=points(0.8), linestyle=":", zorder=1.5
         )
         state = self._motion.isel(time=frame)
         axis = view.frame @ state["axis"].to_numpy()
-        solid.place(axes, view.body, axis, view.frame @ state["position"].to_numpy())
+        place = view.frame @ state["position"].to_numpy()
+        solid.put(axes, view.body, solid.picture(view.body, axis), place)
         velocity = view.frame @ state["velocity"].to_numpy()
         rotation = float((view.frame @ state["angular_velocity"].to_numpy())[2])
         done = None
@@ -246,21 +236,15 @@ class Film:
             draw.marks(axes, centre, 1e3 * hit.contact)
             velocity, rotation = hit.velocity[after], float(hit.rotation[after][2])
             done = hit if after else None
-        self._arrows(axes, centre, velocity, rotation, done)
-        self._words(axes, one, velocity, rotation, done)
-        axes.set_xlim(centre[0] - half, centre[0] + half)
-        axes.set_ylim(-far, top)
+        length, angle = view.scales
+        draw.turn(axes, centre, draw.ARC * far, angle * rotation, draw.ROTATION)
+        draw.arrow(axes, centre, 1e3 * length * velocity[:2], draw.VELOCITY)
+        if done is not None:
+            draw.arrow(axes, 1e3 * done.contact[:2], 1e3 * length * done.impulse[:2], draw.IMPULSE)
+        self._words(figure, one, velocity, rotation, done)
         return figure
 
-    def _arrows(self, axes: Any, centre: FloatArray, v: FloatArray, w: float, hit: Impact | None) -> None:
-        length, angle = self._view.scales
-        far = 1e3 * solid.reach(self._view.body)
-        draw.turn(axes, centre, draw.ARC * far, angle * w, draw.ROTATION)
-        draw.arrow(axes, centre, 1e3 * length * v[:2], draw.VELOCITY)
-        if hit is not None:
-            draw.arrow(axes, 1e3 * hit.contact[:2], 1e3 * length * hit.impulse[:2], draw.IMPULSE)
-
-    def _words(self, axes: Any, one: Frame, v: FloatArray, w: float, hit: Impact | None) -> None:
+    def _words(self, figure: Figure, one: Frame, v: FloatArray, w: float, hit: Impact | None) -> None:
         """Write the key with its values, what the impact did, and how slow the film is."""
         past = hit or (self._view.impacts[one.before - 1] if one.before else None)
         push = "" if hit is None else f"{np.linalg.norm(hit.impulse):.2f} m/s"
@@ -269,7 +253,6 @@ class Film:
             (rf"$\omega$ = {abs(w):.0f} rad/s", draw.ROTATION, 0.47, "center"),
             (rf"$P/m$ = {push}" if push else "", draw.IMPULSE, 0.97, "right"),
         )
-        figure = axes.figure
         for text, number, x, side in keys:
             figure.text(x, 0.985, text, color=colors()[number], ha=side, va="top", fontsize="medium")
         if past is not None:
@@ -282,7 +265,7 @@ class Film:
 
     def _window(self) -> tuple[float, float]:
         """Return how far the pictures reach to either side of the centre of mass, and up, in mm."""
-        far = 1e3 * solid.reach(self._view.body)
+        far = self._view.reach
         top = float(self._centres[:, 1].max()) + 1.4 * far
         return 0.5 * (top + far) * (COLUMN * 0.96) / (_HEIGHT * 0.80), top
 
@@ -339,7 +322,7 @@ def _schedule(view: Sideview, data: xr.Dataset, particle: int) -> tuple[Frame, .
     begin = times[first - 1] if first else 0.0
     last = first + len(impacts)
     end = times[last] if last < times.size and np.isfinite(times[last]) else impacts[-1].time
-    far = solid.reach(view.body)
+    far = view.body.compiled.farthest()
     gravity, incline = pull("data", data)
     gravity *= np.cos(incline)
     one, other = impacts[0], impacts[-1]

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from restitution._internal.arrays import FARTHEST, FloatArray, check_each, whole
 from restitution._internal.parameters import ParameterError, Problem
-from restitution.drop.recorded import RECORDS, attribute, check_frame, variables
+from restitution.drop.recorded import RECORDS, check_frame, variables
 from restitution.drop.trajectory import times_of
 from restitution.figures.scene import _solid as solid
 from restitution.figures.scene import _vectors as draw
@@ -61,7 +61,6 @@ class Sideview:
     """The impacts of a particle, seen along the plane and across the axis of the body at the first."""
 
     body: Body
-    mass: float
     frame: FloatArray  # rows: right, up, towards the reader
     impacts: tuple[Impact, ...]
 
@@ -74,7 +73,6 @@ class Sideview:
         found = variables("data", data, 'restitution.simulate(..., record="state")', _NEEDED)
         check_frame("data", data)
         body = solid.body_of(data)
-        mass = attribute("data", data, "mass", "a finite number > 0", lambda m: 0.0 < m < np.inf)
         particle = whole("particle", particle, 0, data.sizes["particle"] - 1)
         one = {key: values[particle] for key, values in zip(_NEEDED, found, strict=True)}
         happened = times_of(one["time"]).size
@@ -100,7 +98,12 @@ class Sideview:
                     (vectors["angular_velocity_before"], vectors["angular_velocity_after"]),
                 )
             )
-        return cls(body, mass, frame, tuple(impacts))
+        return cls(body, frame, tuple(impacts))
+
+    @property
+    def reach(self) -> float:
+        """How far the surface is from the centre of mass, at most, in mm."""
+        return 1e3 * self.body.compiled.farthest()
 
     @property
     def scales(self) -> tuple[float, float]:
@@ -108,7 +111,7 @@ class Sideview:
         speeds = [v for one in self.impacts for v in (*one.velocity, one.impulse)]
         turns = [abs(float(w[2])) for one in self.impacts for w in one.rotation]
         fastest = max(float(np.hypot(v[0], v[1])) for v in speeds)
-        return 1.15 * solid.reach(self.body) / (fastest or 1.0), LARGEST_TURN / (max(turns) or 1.0)
+        return 1.15 * self.body.compiled.farthest() / (fastest or 1.0), LARGEST_TURN / (max(turns) or 1.0)
 
 
 def _check(one: dict[str, FloatArray]) -> None:
@@ -167,14 +170,12 @@ def impact(data: xr.Dataset, particle: int = 0, impact: int = 0, *, style: Style
 
 
 def _draw(axes: Axes, view: Sideview, when: int) -> None:
-    one, body = view.impacts[0], view.body
-    far = 1e3 * solid.reach(body)
-    x, contact = 1e3 * one.centre[0], 1e3 * one.contact[:2]
-    centre = 1e3 * one.centre[:2]
-    draw.bare(axes)
-    draw.plane(axes, x, 1.9 * far, 0.25 * far)
+    one, body, far = view.impacts[0], view.body, view.reach
+    centre, contact = 1e3 * one.centre[:2], 1e3 * one.contact[:2]
+    x, top = centre[0], centre[1] + (draw.ARC + 0.3) * far
+    draw.stage(axes, x, 1.9 * far, 0.25 * far, (-0.6 * far, top))
     draw.scale_bar(axes, x - 1.9 * far, -0.5 * far, 2.0 * far)
-    solid.place(axes, body, one.axis, one.centre)
+    solid.put(axes, body, solid.picture(body, one.axis), one.centre)
     beyond = one.velocity[when][:2]
     if when == 0:  # the lever arm
         axes.plot(*zip(centre, contact, strict=True), color="black", linewidth=points(1.0), zorder=3.0)
@@ -216,8 +217,6 @@ def _draw(axes: Axes, view: Sideview, when: int) -> None:
         else rf"before: $v_G^n = {one.speed:.3g}$ m/s"
     )
     axes.set_title(told.replace("-", "\N{MINUS SIGN}"))
-    axes.set_xlim(x - 1.9 * far, x + 1.9 * far)
-    axes.set_ylim(-0.6 * far, 1e3 * one.centre[1] + (draw.ARC + 0.3) * far)
 
 
 def _label(axes: Axes, at: FloatArray, along: FloatArray, text: str, number: int, far: float = 7.0) -> None:

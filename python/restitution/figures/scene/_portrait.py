@@ -50,7 +50,7 @@ def body(body: AnyBody, angle: float = math.radians(50.0), *, style: Style | Non
     angle = real("angle", angle, "an angle in rad, in [-2 pi, 2 pi]", lambda x: abs(x) <= 2.0 * math.pi)
     figure, [[axes]] = panels(0.5 * COLUMN, 0.5 * COLUMN)
     axis = np.array([math.sin(angle), math.cos(angle), 0.0])
-    reach = body.compiled.farthest()
+    size = 1e3 * body.compiled.farthest()
     if isinstance(body, RigidBody):
         attitude = _attitude(angle)
         contact, pixels = 1e3 * grain.lowest(body, attitude), grain.picture(body, attitude)
@@ -58,17 +58,13 @@ def body(body: AnyBody, angle: float = math.radians(50.0), *, style: Style | Non
         assert isinstance(body, Body)
         contact, pixels = 1e3 * solid.contact_point(body, axis), solid.picture(body, axis)
     centre = np.array([0.0, -contact[1] / 1e3, 0.0])
-    size = 1e3 * reach
-    draw.bare(axes)
-    draw.plane(axes, 0.0, 1.3 * size, 0.2 * size)
+    draw.stage(axes, 0.0, 1.3 * size, 0.2 * size, (-0.6 * size, 2.2 * size))
     draw.scale_bar(axes, -1.2 * size, -0.42 * size, 1.5 * size)
-    solid.put(axes, pixels, reach, centre)
+    solid.put(axes, body, pixels, centre)
     if isinstance(body, Body):
         ends = np.array([-1.2, 1.2])[:, None] * size * axis[:2] + 1e3 * centre[:2]
         axes.plot(*ends.T, color=ink(0.6), linewidth=points(0.7), linestyle=(0, (6, 2, 1, 2)), zorder=3.0)
     draw.marks(axes, 1e3 * centre, contact * [1.0, 0.0, 0.0])
-    axes.set_xlim(-1.3 * size, 1.3 * size)
-    axes.set_ylim(-0.6 * size, 2.2 * size)
     return figure
 
 

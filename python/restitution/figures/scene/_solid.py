@@ -7,11 +7,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
-from matplotlib.image import AxesImage
 
 from restitution._internal.arrays import FloatArray
 from restitution._internal.parameters import ParameterError, Problem, renamed
-from restitution.bodies import KINDS, Body, of_attributes
+from restitution.bodies import KINDS, AnyBody, Body, of_attributes
 
 PIXELS = 220
 """Across the picture of a body."""
@@ -75,11 +74,6 @@ def body_of(data: xr.Dataset) -> Body:
         raise ParameterError(Problem("data", text)) from None
 
 
-def reach(body: Body) -> float:
-    """Return how far the surface is from the centre of mass, at most, in m."""
-    return body.compiled.farthest()
-
-
 def contact_point(body: Body, axis: FloatArray, end: int | None = None) -> FloatArray:
     """Return the lowest point of a body from its centre of mass, or that of one end, in the picture's frame.
 
@@ -107,7 +101,7 @@ def picture(body: Body, axis: FloatArray) -> FloatArray:
 
     `axis` is the symmetry axis in the frame of the picture: right, up, towards the reader.
     """
-    size = 1.05 * reach(body)
+    size = 1.05 * body.compiled.farthest()
     places = size * (np.arange(PIXELS) + 0.5 - 0.5 * PIXELS) * 2.0 / PIXELS
     right, up = np.meshgrid(places, places)
     flat = np.stack([right, up, np.zeros_like(right)], axis=-1)
@@ -141,14 +135,8 @@ def picture(body: Body, axis: FloatArray) -> FloatArray:
     return np.dstack([color, cover])
 
 
-def place(axes: Axes, body: Body, axis: FloatArray, centre: FloatArray) -> AxesImage:
-    """Draw a body into a panel in mm: its centre of mass at `centre`, in the frame of `picture`, in m."""
-    return put(axes, picture(body, axis), reach(body), centre)
-
-
-def put(axes: Axes, pixels: FloatArray, reach: float, centre: FloatArray) -> AxesImage:
-    """Put the picture of a body where its centre of mass is."""
+def put(axes: Axes, body: AnyBody, pixels: FloatArray, centre: FloatArray) -> None:
+    """Draw the picture of a body into a panel in mm: its centre of mass at `centre`, in its frame, in m."""
     image = axes.imshow(pixels, origin="lower", interpolation="bilinear", zorder=2.0)
-    x, z, size = float(centre[0]), float(centre[1]), 1.05 * reach
+    x, z, size = float(centre[0]), float(centre[1]), 1.05 * body.compiled.farthest()
     image.set_extent((1e3 * (x - size), 1e3 * (x + size), 1e3 * (z - size), 1e3 * (z + size)))
-    return image

@@ -20,15 +20,16 @@ ARC = 1.12
 """Radius of the arc that stands for ω, in reaches of the body."""
 
 
-def bare(axes: Axes) -> None:
-    """Leave nothing of a panel but its contents, with equal scales."""
+def stage(axes: Axes, middle: float, half: float, depth: float, ends: tuple[float, float]) -> None:
+    """Draw the plane at height 0 on both sides of `middle`, with strokes that are fixed to it; all in mm.
+
+    Of the panel nothing is left but its contents, with equal scales, between these heights.
+    """
     axes.set_axis_off()
     axes.set_aspect("equal")
-
-
-def plane(axes: Axes, middle: float, half: float, depth: float) -> None:
-    """Draw the plane at height 0 on both sides of `middle`, with strokes that are fixed to it; all in mm."""
     left, right = middle - half, middle + half
+    axes.set_xlim(left, right)
+    axes.set_ylim(*ends)
     axes.add_patch(Rectangle((left, -depth), 2.0 * half, depth, facecolor=ink(0.12), linewidth=0))
     first, last = int(np.floor(left / depth)) - 1, int(np.ceil(right / depth)) + 1
     strokes = [[(depth * k, -depth), (depth * (k + 0.8), 0.0)] for k in range(first, last)]
