@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
+import xarray as xr
 
 import restitution as rs
 from restitution.figures import report as html
@@ -61,8 +62,9 @@ def _by_rules(runs: Runs, s: Settings) -> Table:
         "a₂, grains",
         "with E_rot",
         "of v/√T_tr",
+        "T_tr/T₀ at the end, pair",
+        "plane",
     )
-    last = ("T_tr/T₀ at the end, pair", "plane")
     rows = []
     for (e, x), rules in runs.rules.items():
         gases = {"grains": runs.grains[e, x], **rules}
@@ -74,11 +76,8 @@ def _by_rules(runs: Runs, s: Settings) -> Table:
             end = gases[name]["translational_temperature"][-1] / s.temperature if name in gases else None
             cells.append("" if end is None else f"{float(end):.3f}")
         rows.append(tuple(cells))
-    return (
-        "Rates of cooling over that of smooth spheres, and Sonine coefficients, second half",
-        (*heads, *last),
-        rows,
-    )
+    caption = "Rates of cooling over that of smooth spheres, and Sonine coefficients, second half"
+    return caption, heads, rows
 
 
 def _friction(runs: Runs, s: Settings) -> Table:
@@ -91,6 +90,7 @@ def _friction(runs: Runs, s: Settings) -> Table:
         "its rate",
         "dumbbells, across",
         "about their axis",
+        "rate",
     )
     rows = []
     for key, data in runs.friction["spheres"].items():
@@ -103,11 +103,11 @@ def _friction(runs: Runs, s: Settings) -> Table:
         about = _ends(long["axis_temperature"].isel(axis=2) / long["translational_temperature"])
         cells += [f"{across(long)[0]:.3g}", "{:.3g}, {:.3g}".format(*about), f"{fall(long):.4f}"]
         rows.append(tuple(cells))
-    return "Grains with Coulomb friction, after half of the collisions and at the end", (*heads, "rate"), rows
+    return "Grains with Coulomb friction, after half of the collisions and at the end", heads, rows
 
 
-def _ends(values: object) -> tuple[float, float]:
-    return float(values[len(values) // 2]), float(values[-1])  # type: ignore[arg-type,index]
+def _ends(values: xr.DataArray) -> tuple[float, float]:
+    return float(values[len(values) // 2]), float(values[-1])
 
 
 def _sections(runs: Runs, s: Settings) -> Sequence[Section]:

@@ -73,11 +73,11 @@ def simulate(s: Settings, particles: int, runner: Runner) -> Runs:
             # p(ε | v) needs a thousand particles.
             rules = spheres.dropped(body, law, pair, max(particles // 2, 1000), s.drop) | rules
         found = {}
+        few, warm = max(particles // 2, 40), s.temperature / s.theta
         for rule, outcome in rules.items():
             name = f"spheres, {rule}, ε_n {normal:g}, L/R {elongation:g}"
             seed = derived_seed(runner.seed, name)
-            gas = spheres.cool(outcome, s.theta, s.share * collisions, seed, max(particles // 2, 40))
-            warm = s.temperature / s.theta
+            gas = spheres.cool(outcome, s.theta, s.share * collisions, seed, few)
             columns = {
                 "collisions": gas.collisions,
                 "translational_temperature": warm * gas.theta,
@@ -85,9 +85,8 @@ def simulate(s: Settings, particles: int, runner: Runner) -> Runs:
                 "a20": gas.a2,
             }
             data = xr.Dataset({key: ("time", column) for key, column in columns.items()})
-            about = {"run": name, "seed": seed, "particles": max(particles // 2, 40)}
             told = {"body": f"sphere that draws ε of {body}", "law": str(law), "version": version_here()}
-            found[rule] = data.assign_attrs(about | told)
+            found[rule] = data.assign_attrs(run=name, seed=seed, particles=few, **told)
             runner.done()
         return found
 

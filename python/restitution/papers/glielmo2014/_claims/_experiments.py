@@ -62,17 +62,16 @@ def _shares(settings: Settings) -> dict[str, tuple[float, float]]:
             tilt=TILT,
             spin=SPIN,
         ).data
-        one, fitted = (
-            data.standard_deviation.isel(impact=-1),
-            data.parameter_standard_deviation.isel(parameter=0),
+        found[f"{ball}, {name}"] = (
+            _share(data.standard_deviation.isel(impact=-1)),
+            _share(data.parameter_standard_deviation.isel(parameter=0)),
         )
-        by_shape = ["shape", "spin", "tilt"]
-        found[f"{ball}, {name}"] = (_share(one, by_shape), _share(fitted, by_shape))
     return found
 
 
-def _share(deviation: xr.DataArray, chosen: list[str]) -> float:
-    return float((deviation.sel(source=chosen) ** 2).sum() / deviation.sel(source="total") ** 2)
+def _share(deviation: xr.DataArray) -> float:
+    by_shape = deviation.sel(source=["shape", "spin", "tilt"])
+    return float((by_shape**2).sum() / deviation.sel(source="total") ** 2)
 
 
 _EXPERIMENT = (
@@ -94,18 +93,16 @@ _EXPERIMENT = (
 def considerable(runs: Runs, settings: Settings) -> Finding:
     lost = 1.0 - settings.normal
     sigma = by_elongation(runs, settings)
-    above = {x: bool(np.all(one.beyond(lost) > SIGNIFICANT)) for x, one in sigma.items()}
-    some = {x: bool(np.any(one.beyond(lost) > SIGNIFICANT)) for x, one in sigma.items()}
-    named, everywhere = (
-        "L/R = " + ", ".join(f"{x:g}" for x, yes in those.items() if yes) if any(those.values()) else "no L/R"
-        for those in (some, above)
-    )
+    beyond = {f"{x:g}": one.beyond(lost) > SIGNIFICANT for x, one in sigma.items()}
+    some = [x for x, one in beyond.items() if one.any()]
+    above = [x for x, one in beyond.items() if one.all()]
+    named, everywhere = ("L/R = " + ", ".join(those) if those else "no L/R" for those in (some, above))
     clear = np.concatenate([one.value - SIGNIFICANT * one.error for one in sigma.values()])
     return Finding(
         measured=tuple(
             item for x in sigma for item in listed(f"σ(ε), L/R = {x:g}", settings.labels, sigma[x])
         ),
-        verdict=verdict(all(above.values()), any(some.values())),
+        verdict=verdict(len(above) == len(sigma), bool(some)),
         rule=f"Considerable means more than 1 − ε_n = {lost:.2g}, the loss due to the material. Holds if "
         f"σ(ε) is larger, by more than {SIGNIFICANT:g} standard errors, at each of the four speeds for every "
         "L/R of Figs. 2 and 6; in part if at some speed for some L/R; fails otherwise. The threshold is "
