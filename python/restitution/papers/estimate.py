@@ -35,10 +35,6 @@ class Estimate:
         variance = np.diag(self.covariance)
         return _in_errors(np.diff(self.value), variance[1:] + variance[:-1] - 2 * np.diag(self.covariance, 1))
 
-    def span(self) -> float:
-        """Return last value − first value, in standard errors of that difference."""
-        return float(self.take([0, -1]).steps()[0])
-
     def beyond(self, reference: float) -> Array:
         """Return value − `reference` in standard errors, shape (k,)."""
         return _in_errors(self.value - reference, np.diag(self.covariance))

@@ -74,16 +74,11 @@ def shapes(runs: Runs, data: xr.Dataset, settings: AtSpeeds, name: str) -> list[
         impacts = in_windows(data["impact_velocity"], settings.speed_windows)
         drawn = impacts.one_per_particle(seed)
         every, some = (chosen.of(data["restitution"]) for chosen in (impacts, drawn))
-        return [
-            shape(
-                label,
-                every[impacts.cell == k],
-                impacts.where[0][impacts.cell == k],
-                some[drawn.cell == k],
-                seed,
-            )
-            for k, label in enumerate(settings.labels)
-        ]
+        found = []
+        for k, label in enumerate(settings.labels):
+            here = impacts.cell == k
+            found.append(shape(label, every[here], impacts.where[0][here], some[drawn.cell == k], seed))
+        return found
 
     return runs.once(name, measure)
 

@@ -45,7 +45,7 @@ class Trend:
 
 def trend(estimate: Estimate) -> Trend:
     """Return the trend of an estimate from its first bin to its last."""
-    return Trend(estimate.span(), float(min(0.0, *estimate.steps())))
+    return Trend(float(estimate.take([0, -1]).steps()[0]), float(min(0.0, *estimate.steps())))
 
 
 @dataclass(frozen=True)

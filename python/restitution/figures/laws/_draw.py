@@ -15,7 +15,6 @@ from restitution.figures.style import DEVIATION, FRACTION, RESTITUTION, VELOCITY
 _LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "-", "-", "--", ":", "-")
 _VELOCITY_TICKS = (0.03, 0.1, 0.3, 1.0)
 _RANGE = (0.018, 1.1)
-_LETTERS = "abcdefghijklmn"
 
 
 @fg.styled
@@ -61,7 +60,7 @@ def draw(data: xr.Dataset, *, style: Style | None = None) -> Figure:
         f"mean {FRACTION}",
         "share creating energy",
     )
-    letters = iter(_LETTERS)
+    letters = iter("abcdefghijklmn")
     for row, label in zip(panels, labels, strict=True):
         row[0].set_ylabel(label)
         for axes in row:
@@ -143,10 +142,9 @@ def _bounds(axes: Axes, data: xr.Dataset) -> None:
     axes.set_ylim(1e-5, 20.0)
     for elongation, most in zip(data["elongation"].to_numpy(), data["bound"].to_numpy() - 1.0, strict=True):
         axes.axhline(most, color="0.55", linewidth=0.8, linestyle="-.")
-        place = (1.01, most)
         axes.annotate(
             f"{elongation:g}",
-            place,
+            (1.01, most),
             xycoords=axes.get_yaxis_transform(),
             va="center",
             color=ink(0.6),
