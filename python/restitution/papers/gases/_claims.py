@@ -99,16 +99,13 @@ def two_stages(runs: Runs, s: Settings) -> Finding:
     measured, steady, powers = [], [], []
     for x in s.elongations[1:]:
         data = half(runs.grains[s.normals[0], x])
-        quotient = np.log(data["rotational_temperature"] / data["translational_temperature"])
+        warm = data["translational_temperature"]
+        quotient = np.log(data["rotational_temperature"] / warm)
         change = float(quotient[-1] - quotient[0])
         # T = T₀/(1 + t/τ)²: T^(-1/2) is linear in t, and T falls as the power -2 of t + τ.
         times = data["time"].to_numpy()
-        line = np.polyfit(times, data["translational_temperature"] ** -0.5, 1)
-        power = -float(
-            np.polyfit(
-                np.log(np.abs(times + line[1] / line[0])), np.log(data["translational_temperature"]), 1
-            )[0]
-        )
+        slope, first = np.polyfit(times, warm**-0.5, 1)
+        power = -float(np.polyfit(np.log(np.abs(times + first / slope)), np.log(warm), 1)[0])
         at = f"L/R = {x:g}"
         measured += [
             Measurement("T_rot/T_tr", *ratio(runs.grains[s.normals[0], x]), at=at),
@@ -121,11 +118,8 @@ def two_stages(runs: Runs, s: Settings) -> Finding:
     begun = (cold["rotational_temperature"] / cold["translational_temperature"]).to_numpy()
     wanted = rs.gas.theory.steady_ratio(s.dumbbell(s.elongations[0]), rs.Frictionless(normal=s.normals[0]))
     reached = np.interp(0.9 * wanted, begun, cold["collisions"])
-    measured.append(
-        Measurement(
-            f"collisions until nine tenths of the ratio, from T_rot = 0, L/R = {s.elongations[0]:g}", reached
-        )
-    )
+    until = f"collisions until nine tenths of the ratio, from T_rot = 0, L/R = {s.elongations[0]:g}"
+    measured.append(Measurement(until, reached))
     return Finding(
         tuple(measured),
         verdict(all(steady) and all(powers), all(steady)),
