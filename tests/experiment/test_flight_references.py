@@ -13,8 +13,8 @@ from scipy.optimize import least_squares
 import restitution as rs
 from reference.bouncing import flight_in_air
 from restitution import flight
-from restitution.experiment.flight._problem import Misfit, Scatter, joined
-from restitution.experiment.flight.chain import measured_of
+from restitution.experiment.flight._problem import Misfit, Scatter
+from restitution.experiment.flight.chain import joined, measured_of
 from restitution.experiment.flight.laws import by_parameters, by_speed, law_named
 
 SOFT: dict[str, Any] = {"young_modulus": 1e8, "poisson_ratio": 0.4, "density": 1200.0, "radius": 5e-3}

@@ -2,11 +2,10 @@
 
 from typing import TYPE_CHECKING, Any
 
-from restitution.experiment.flight._clock import clock
 from restitution.experiment.flight._fit import compare, fit
 from restitution.experiment.flight._law_fit import LawFit
 from restitution.experiment.flight._read import read
-from restitution.experiment.flight._restitution import restitution
+from restitution.experiment.flight._restitution import clock, restitution
 from restitution.experiment.flight.contact import ContactTime
 from restitution.experiment.flight.drag import Drag
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from restitution._internal.arrays import check_each
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.experiment.flight._law_fit import LawFit
-from restitution.experiment.flight.series import series_of
+from restitution.experiment.flight.chain import series_of
 from restitution.figures.check import check_drawable
 from restitution.figures.pieces import line
 from restitution.figures.style import COLORS, Style, colors, column, panels, styled

@@ -11,11 +11,10 @@ import xarray as xr
 from restitution._internal.arrays import real
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.experiment.flight._law_fit import LawFit
-from restitution.experiment.flight._problem import Misfit, joined
-from restitution.experiment.flight.chain import measured_of
+from restitution.experiment.flight._problem import Misfit
+from restitution.experiment.flight.chain import joined, measured_of, series_of
 from restitution.experiment.flight.laws import law_named
 from restitution.experiment.flight.separation import separation
-from restitution.experiment.flight.series import series_of
 from restitution.experiment.flight.times import LARGEST
 
 

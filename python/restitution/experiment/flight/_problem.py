@@ -12,49 +12,15 @@ from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from scipy.optimize import least_squares, minimize
 
 from restitution._internal.arrays import FloatArray as Array
-from restitution._internal.parameters import ParameterError, Problem
 from restitution.experiment.flight._law_fit import LawFit
-from restitution.experiment.flight.chain import COMMON, Chain, Measured, chain
+from restitution.experiment.flight.chain import COMMON, USUAL_BETWEEN, Measured, joined
 from restitution.experiment.flight.laws import LawOfSpeed, by_parameters, by_speed
-from restitution.experiment.flight.series import USUAL_BETWEEN
+from restitution.experiment.flight.separation import DECIDED
 
 _REFUTED = 16.0
 """χ² for each coefficient from which a law is not fitted further."""
 _MOST_EXPANSIONS, _MOST_STEPS = 10, 30
 """Three are enough where errors are small beside intervals; and steps of Gauss and Newton."""
-
-
-def joined(experiments: list[Measured], shift: Array | None) -> Chain:
-    """Put series one after the other, their numbers moved by `shift`.
-
-    The times are each series' own, and so is the height of the drop; g, drag, contact time and clock are
-    common.
-    """
-    common = [
-        (one.gravity, one.terminal, one.contact, *one.variances[[-COMMON, -3, -2, -1]]) for one in experiments
-    ]
-    if len(set(common)) != 1:
-        raise ParameterError(
-            Problem("data", ": series with different g, drag, contact time or clock; must have the same")
-        )
-    sizes = [one.times.size for one in experiments]
-    total = sum(sizes)
-    columns = total + len(experiments) + COMMON - 1
-    before, after = np.empty(total), np.empty(total)
-    before_by, after_by = np.zeros((total, columns)), np.zeros((total, columns))
-    variances = np.zeros(columns)
-    row = 0
-    for number, (one, size) in enumerate(zip(experiments, sizes, strict=True)):
-        rows = slice(row, row + size)
-        drop = total + COMMON - 1 + number
-        places = [*range(row, row + size), total, drop, total + 1, total + 2, total + 3]
-        part = chain(one if shift is None else one.moved(shift[places]))
-        before[rows], after[rows] = part.before, part.after
-        before_by[rows, places] = part.before_by
-        after_by[rows, places] = part.after_by
-        variances[places] = part.variances
-        row += size
-    return Chain(before, after, before_by, after_by, variances)
 
 
 def _spread(logarithm: float) -> float:
@@ -63,8 +29,6 @@ def _spread(logarithm: float) -> float:
 
 
 _IMPOSSIBLE = 1e300
-_DECIDED = 2.71
-"""Twice the logarithm of a ratio of likelihoods that a variance of zero exceeds in 5 of 100 cases."""
 _AVERAGED = 8.0
 """Drop of the logarithm of the likelihood down to which scatters are averaged over."""
 _STEPS = np.linspace(0.0, 1.0, 13)
@@ -368,7 +332,7 @@ class Misfit:
 
         largest = value()
         # Without errors of the times there is a scatter.
-        excluded = not self.errors_are_known or 2.0 * (largest - value(one=0.0)) > _DECIDED
+        excluded = not self.errors_are_known or 2.0 * (largest - value(one=0.0)) > DECIDED
         if excluded and self.series == 1:
             return covariance, error
         ones = np.array([best.one]) if excluded else reach("one")

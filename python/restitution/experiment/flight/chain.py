@@ -1,13 +1,16 @@
-"""A series of impacts as a chain of flights: speeds before and after each, and what errors do to them."""
+"""Series of impacts as chains of flights: speeds before and after each, and what errors do to them."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import FloatArray as Array
-from restitution._internal.parameters import ParameterError, Problem
-from restitution.drop.recorded import check_successive
+from restitution._internal.arrays import check_each
+from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution.drop.recorded import check_successive, variables
 from restitution.experiment.flight.contact import ContactTime, delays
 from restitution.experiment.flight.drag import Drag, fall, speeds
 from restitution.experiment.flight.setting import Once, setting_of
@@ -19,6 +22,8 @@ _LONGEST_CONTACT = 4.0
 """Intervals must be longer than this many times of contact at 1 m/s."""
 _LONGEST = 50.0
 """Of a flight with drag, in V/g: its body starts with V times the exponential function of this."""
+USUAL_BETWEEN = 3e-3
+"""Half of all plates and hands differ by less in ε: the scale of a half-Cauchy prior (Gelman, 2006)."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,35 @@ class Measured:
             terminal=None if self.terminal is None else self.terminal + float(shift[n + 2]),
             contact=self.contact + float(shift[n + 3]),
         )
+
+
+def series_of(data: Any, *needed: str) -> dict[str, xr.Dataset]:
+    """Take a Dataset of `flight.restitution`, or several, by what errors call them.
+
+    Raises
+    ------
+    ParameterError
+        If one of them is none, lacks a variable that is needed or has it in other units, of other dimensions
+        or of no real numbers, or an error that is negative, or there is none.
+    """
+    several = [data]
+    if isinstance(data, Iterable) and not isinstance(data, xr.Dataset):
+        try:
+            several = list(data)
+        except Exception:  # the object may raise anything
+            several = []
+    if not several or not all(isinstance(one, xr.Dataset) for one in several):
+        raise ParameterError(wrong("data", data, "a Dataset of flight.restitution, or several"))
+    named = {"data": data} if isinstance(data, xr.Dataset) else {}
+    named = named or {f"data[{k}]": one for k, one in enumerate(several)}
+    pairs = ("impact", "other_impact")
+    dimensions = {each: pairs if each.endswith("_covariance") else pairs[:1] for each in needed}
+    for name, one in named.items():
+        for each, values in zip(needed, variables(name, one, "flight.restitution", dimensions), strict=True):
+            check_each(f"{name}.{each}", values, ~np.isinf(values), "finite, or NaN for what is not known")
+            if each.endswith("_error"):
+                check_each(f"{name}.{each}", values, ~(values < 0.0), "a standard error >= 0, or NaN")
+    return named
 
 
 def measured(
@@ -159,3 +193,36 @@ def chain(given: Measured) -> Chain:
     before_by[np.isnan(before)] = 0.0
     after_by[np.isnan(after)] = 0.0
     return Chain(before, after, before_by, after_by, given.variances)
+
+
+def joined(experiments: list[Measured], shift: Array | None) -> Chain:
+    """Put series one after the other, their numbers moved by `shift`.
+
+    The times are each series' own, and so is the height of the drop; g, drag, contact time and clock are
+    common.
+    """
+    common = [
+        (one.gravity, one.terminal, one.contact, *one.variances[[-COMMON, -3, -2, -1]]) for one in experiments
+    ]
+    if len(set(common)) != 1:
+        raise ParameterError(
+            Problem("data", ": series with different g, drag, contact time or clock; must have the same")
+        )
+    sizes = [one.times.size for one in experiments]
+    total = sum(sizes)
+    columns = total + len(experiments) + COMMON - 1
+    before, after = np.empty(total), np.empty(total)
+    before_by, after_by = np.zeros((total, columns)), np.zeros((total, columns))
+    variances = np.zeros(columns)
+    row = 0
+    for number, (one, size) in enumerate(zip(experiments, sizes, strict=True)):
+        rows = slice(row, row + size)
+        drop = total + COMMON - 1 + number
+        places = [*range(row, row + size), total, drop, total + 1, total + 2, total + 3]
+        part = chain(one if shift is None else one.moved(shift[places]))
+        before[rows], after[rows] = part.before, part.after
+        before_by[rows, places] = part.before_by
+        after_by[rows, places] = part.after_by
+        variances[places] = part.variances
+        row += size
+    return Chain(before, after, before_by, after_by, variances)

@@ -7,10 +7,9 @@ import numpy as np
 
 from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.text import digits, with_error
-from restitution.experiment.flight._problem import joined
-from restitution.experiment.flight.chain import Measured
+from restitution.experiment.flight.chain import Measured, joined
 
-_DECIDED = 2.71
+DECIDED = 2.71
 """Twice the logarithm of a ratio of likelihoods that a variance of zero exceeds in 5 of 100 cases."""
 _FEWEST = 4
 """Differences beyond the law that are needed to tell two variances apart."""
@@ -89,7 +88,7 @@ def separated(speed: Array, ratio: Array, by_times: Array) -> Separation:
     likelihood = -0.5 * (number * np.log(total) + np.sum(np.log(relative), axis=1))
     timing, scatter = np.sqrt((1.0 - _SHARES) * total / mean), np.sqrt(_SHARES * total)
     best = int(np.argmax(likelihood))
-    possible = 2.0 * (likelihood[best] - likelihood) < _DECIDED
+    possible = 2.0 * (likelihood[best] - likelihood) < DECIDED
     timed, scatters = not possible[-1], not possible[0]
     most_timing, most_scatter = 1e6 * float(timing[possible].max()), float(scatter[possible].max())
     if timed and scatters:

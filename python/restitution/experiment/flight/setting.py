@@ -40,6 +40,23 @@ class Once(Gravity):
     drop_height_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m")] = 0.0
 
 
+_ATTRIBUTES: dict[type[Parameters], dict[str, str]] = {
+    Drag: {"terminal_velocity": "terminal_velocity", "uncertainty": "terminal_velocity_uncertainty"},
+    ContactTime: {"at_1_m_s": "contact_time", "uncertainty": "contact_time_uncertainty"},
+}
+"""Of a Dataset: by field, what says in it what drag and contact were."""
+
+
+def attributes(*given: Drag | ContactTime | None) -> dict[str, float]:
+    """Return the attributes of a Dataset that say what drag and contact were, for those that are given."""
+    return {
+        name: getattr(one, field)
+        for one in given
+        if one is not None
+        for field, name in _ATTRIBUTES[type(one)].items()
+    }
+
+
 def setting_of(name: str, data: xr.Dataset) -> tuple[Once, Drag | None, ContactTime | None]:
     """Read the attributes of a Dataset that `flight.restitution` returned; errors that are not there are 0.
 
@@ -49,8 +66,9 @@ def setting_of(name: str, data: xr.Dataset) -> tuple[Once, Drag | None, ContactT
         If one is missing, or is not as `flight.restitution` takes it.
     """
 
-    def read(kind: type[T], **own: str) -> T | None:
+    def read(kind: type[T]) -> T | None:
         """Make what has these attributes, by the names of its fields; None where there are none."""
+        own = _ATTRIBUTES[kind]
         given = {field: data.attrs[each] for field, each in own.items() if each in data.attrs}
         with renamed(lambda field: f"{name}.{own.get(field, field)}"):
             return kind(**given) if given else None
@@ -58,6 +76,4 @@ def setting_of(name: str, data: xr.Dataset) -> tuple[Once, Drag | None, ContactT
     none = {"gravity_uncertainty": 0.0, "clock_uncertainty": 0.0}
     with renamed(lambda field: f"{name}.{field}"):
         once = Once(**none | {each: data.attrs[each] for each in Once.model_fields if each in data.attrs})
-    drag = read(Drag, terminal_velocity="terminal_velocity", uncertainty="terminal_velocity_uncertainty")
-    contact = read(ContactTime, at_1_m_s="contact_time", uncertainty="contact_time_uncertainty")
-    return once, drag, contact
+    return once, read(Drag), read(ContactTime)

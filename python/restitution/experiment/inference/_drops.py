@@ -15,7 +15,7 @@ import numpy as np
 from scipy.special import logsumexp, ndtr
 
 from restitution._internal.arrays import FloatArray as Array
-from restitution.experiment.flight.series import USUAL_BETWEEN
+from restitution.experiment.flight.chain import USUAL_BETWEEN
 from restitution.experiment.inference._likelihood import IMPOSSIBLE, Density
 from restitution.experiment.inference._series import Series
 

@@ -25,7 +25,7 @@ from restitution._internal.parameters import (
 )
 from restitution.bodies import Form, Wall
 from restitution.experiment.budget.experiment import HEIGHT, STICKS, frictions
-from restitution.experiment.flight.series import series_of
+from restitution.experiment.flight.chain import series_of
 from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._rough import PER_SHAPE, flights, over_heights
 from restitution.experiment.inference._series import NEEDED, Series, check_from_release
