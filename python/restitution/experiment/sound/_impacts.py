@@ -16,8 +16,7 @@ from restitution._internal.parameters import ParameterError, Problem, TooLargeEr
 from restitution.experiment.flight.times import DOUBLED, DOUBTFUL, GOOD, MISSED, flag_attributes
 from restitution.experiment.sound._choice import Choice, choose
 from restitution.experiment.sound._envelope import Envelope, bands, envelope, rounding
-from restitution.experiment.sound._series import LONGEST_FLIGHT, best_series, strongest
-from restitution.experiment.sound._track import Track, followed
+from restitution.experiment.sound._series import LONGEST_FLIGHT, Track, best_series, followed, strongest
 from restitution.experiment.sound.load import clipped_share, load
 
 CANDIDATE = 4.0
@@ -160,11 +159,9 @@ def _series_in(one: Envelope, times: Array, rewards: Array, longest: float) -> l
     """Take series with flights up to a longest out of the candidates of a band, until none is left."""
     tracks: list[Track] = []
     while True:
-        found = best_series(times, rewards, one.width / 3.0, longest)
-        if found is None or found.score < (FURTHER_SCORE if tracks else FIRST_SCORE):
-            return tracks
-        members = found.members
-        if found.score < _MEAN * members.size or (tracks and members.size < _FURTHER_MEMBERS):
+        members, score = best_series(times, rewards, one.width / 3.0, longest)
+        least = max(FURTHER_SCORE if tracks else FIRST_SCORE, _MEAN * members.size)
+        if score < least or (tracks and members.size < _FURTHER_MEMBERS):
             return tracks
         worth = float(np.minimum(rewards[members], _SATURATED).sum())
         tracks.append(Track(times[members], worth, one))
@@ -183,10 +180,10 @@ def _of_another_ball(tracks: list[Track]) -> int:
     left = np.abs(times[:, None] - own).min(axis=1, initial=np.inf) > 2.0 * one.width
     left &= np.any([(each.times[0] < times) & (times < each.times[-1]) for each in tracks], axis=0)
     times, rewards = strongest(times[left], _rewards(one, rises[left]))
-    found = best_series(times, rewards, one.width / 3.0)
-    if found is None or found.score < FURTHER_SCORE or found.score < _MEAN * found.members.size:
+    members, score = best_series(times, rewards, one.width / 3.0)
+    if score < max(FURTHER_SCORE, _MEAN * members.size):
         return 0
-    heard = times[found.members]
+    heard = times[members]
     delays = heard - own[np.maximum(np.searchsorted(own, heard) - 1, 0)]
     alone = heard.size >= _OTHER_MEMBERS and np.std(delays) > 2.0 * one.width
     return heard.size if alone else 0

@@ -1,8 +1,14 @@
 """Sound files and arrays as samples: what can be heard in them, and what is wrong with them."""
 
 import math
+import shlex
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -13,7 +19,6 @@ from restitution._internal.arrays import real, reals
 from restitution._internal.files import check_regular, path_from
 from restitution._internal.parameters import ParameterError, Problem, TooLargeError, wrong
 from restitution._internal.resources import available_memory
-from restitution.experiment.sound import _ffmpeg
 
 LOWEST_RATE = 2000.0
 """In Hz; below it nothing is left of an impact's sound."""
@@ -25,6 +30,8 @@ _QUIET = 1e-10
 """Quieter samples are amplified, as 16 bits in integers of 64: floors of powers are made for full scale."""
 _OF_TIME, _OF_SAMPLE = 40, 8
 """Bytes that it takes at least to listen to a time, and to each of its samples in a channel."""
+_DECODED = (".m4a", ".aac", ".mp4", ".3gp", ".amr", ".wma")
+"""Endings of recordings as telephones make them, which libsndfile does not read and ffmpeg decodes."""
 _SOURCE = "a path, or samples of shape (n,) or (n, channels)"
 
 
@@ -81,10 +88,39 @@ def load(source: str | PathLike[str] | npt.ArrayLike, rate: float | None) -> tup
 def _file(path: Path) -> tuple[Array, float]:
     check_regular(path)
     path.open("rb").close()  # an OSError that names the file, if it cannot be read
-    if path.suffix.lower() in _ffmpeg.ENDINGS:
-        with _ffmpeg.decoded(path) as wave:
+    if path.suffix.lower() in _DECODED:
+        with _decoded(path) as wave:
             return _read(wave, str(path))
     return _read(path, str(path))
+
+
+@contextmanager
+def _decoded(path: Path) -> Iterator[Path]:
+    """Decode a recording, and yield the WAV file, which is removed afterwards.
+
+    Raises
+    ------
+    ValueError
+        If there is no ffmpeg, with the command that converts the recording elsewhere, or it finds no sound.
+    """
+    program = shutil.which("ffmpeg")
+    if program is None:
+        text = (
+            ": is read with ffmpeg, which is not installed; install it, or convert the file where it is: "
+            f"ffmpeg -i {shlex.quote(path.name)} {shlex.quote(path.stem + '.wav')}"
+        )
+        raise ParameterError(Problem(str(path), text))
+    with TemporaryDirectory(prefix="restitution-") as folder:
+        wave = Path(folder) / "sound.wav"
+        # The name of a file may look like an option or an address.
+        of_file = ["-i", f"file:{path.absolute()}", "-vn", "-c:a", "pcm_f32le", "-f", "wav"]
+        command = [program, "-nostdin", "-v", "error", *of_file, str(wave)]
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+        if done.returncode:
+            said = done.stderr.decode(errors="replace").strip().splitlines()
+            reason = said[-1] if said else f"it ended with status {done.returncode}"
+            raise ParameterError(Problem(str(path), f": not a sound that ffmpeg can read: {reason}"))
+        yield wave
 
 
 def _read(path: Path, name: str) -> tuple[Array, float]:
