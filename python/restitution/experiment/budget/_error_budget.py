@@ -11,14 +11,14 @@ from restitution._internal.arrays import flag
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.bodies import BODIES, Body
 from restitution.experiment.budget import _sources
-from restitution.experiment.budget._near_round import near_round
+from restitution.experiment.budget._closed_forms import near_round
+from restitution.experiment.budget._closed_forms import roughness as rough
 from restitution.experiment.budget._results import ErrorBudget
-from restitution.experiment.budget._rough import roughness as rough
 from restitution.experiment.budget._sources import Source, unbiased
 from restitution.experiment.budget.experiment import Experiment, Setting, mean_radius
 from restitution.experiment.flight.contact import ContactTime, contact_of
 from restitution.experiment.flight.drag import Drag
-from restitution.experiment.flight.setting import QUARTZ
+from restitution.experiment.flight.setting import QUARTZ, attributes
 from restitution.laws import Law, Material
 
 
@@ -163,9 +163,8 @@ def error_budget(
     }
     accounted = touching.uncertainty if contact_corrected else 0.0
     data = _dataset(experiment, body, sources, force, accounted)
-    said = {"contact_time": touching.at_1_m_s, "contact_time_uncertainty": touching.uncertainty}
-    said |= {"contact_given": int(contact_time is not None), "contact_corrected": int(contact_corrected)}
-    return ErrorBudget(data.assign_attrs(drag_corrected=int(drag_corrected), **said))
+    said = {"contact_given": int(contact_time is not None), "contact_corrected": int(contact_corrected)}
+    return ErrorBudget(data.assign_attrs(drag_corrected=int(drag_corrected), **attributes(touching), **said))
 
 
 def possible(body: Body) -> ContactTime:
@@ -222,17 +221,23 @@ def _dataset(
     }
     limit = near_round(experiment, body)
     if limit is not None:
+        kick, bias, deviation = limit
         text = "closed form of shape and spin, angles independent"
         variables |= {
-            "kick": ("impact", limit.kick, one | {"long_name": "kick parameter K of the rotation"}),
-            "turning_bias": ("impact", np.full(n, limit.bias), one | {"long_name": f"bias of ε, {text}"}),
+            "kick": ("impact", kick, one | {"long_name": "kick parameter K of the rotation"}),
+            "turning_bias": ("impact", bias, one | {"long_name": f"bias of ε, {text}"}),
             "turning_standard_deviation": (
                 "impact",
-                limit.deviation,
+                deviation,
                 one | {"long_name": f"standard deviation of ε, {text}"},
             ),
         }
-    attrs: dict[str, Any] = {
+    coords = {
+        "source": [*sources, "total"],
+        "parameter": list(experiment.form.parameters),
+        "impact": np.arange(n),
+    }
+    attrs = {
         "title": "Error budget of a bouncing-ball experiment",
         "source": f"restitution {version('restitution')}",
         "body": repr(body),
@@ -240,18 +245,9 @@ def _dataset(
         "fitted_law": experiment.form.name,
         **experiment.setting.model_dump(),
         "gravity_uncertainty": experiment.setting.gravity_error,
+        **attributes(force),
     }
-    if force is not None:
-        attrs |= {
-            "terminal_velocity": force.terminal_velocity,
-            "terminal_velocity_uncertainty": force.uncertainty,
-        }
-    coords = {
-        "source": [*sources, "total"],
-        "parameter": list(experiment.form.parameters),
-        "impact": np.arange(n),
-    }
-    return xr.Dataset(variables, coords=coords, attrs=attrs)
+    return xr.Dataset(variables, coords, attrs)
 
 
 _LONG = {

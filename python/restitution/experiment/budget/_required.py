@@ -10,9 +10,9 @@ from pydantic import Field
 
 from restitution._internal.parameters import Allowed, Number, ParameterError, Parameters, TooLargeError
 from restitution.bodies import Body, Form, from_roundness
+from restitution.experiment.budget._closed_forms import roughness as rough
 from restitution.experiment.budget._error_budget import possible, weights
 from restitution.experiment.budget._results import RequiredRoundness
-from restitution.experiment.budget._rough import roughness as rough
 from restitution.experiment.budget._sources import contact, shape
 from restitution.experiment.budget.experiment import Experiment, Setting
 from restitution.experiment.flight.contact import ContactTime, contact_of
