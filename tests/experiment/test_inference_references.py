@@ -13,9 +13,14 @@ from scipy import stats
 import restitution as rs
 from reference.bouncing import impact_times
 from restitution.drop.run import Run
-from restitution.experiment.inference._drops import averaged, scatters_between, smoothed
 from restitution.experiment.inference._family import Family
-from restitution.experiment.inference._likelihood import IMPOSSIBLE, Density
+from restitution.experiment.inference._likelihood import (
+    IMPOSSIBLE,
+    Density,
+    averaged,
+    scatters_between,
+    smoothed,
+)
 from restitution.experiment.inference._series import Drops, Series
 
 RUBBER = rs.Viscoelastic(young_modulus=1e7, poisson_ratio=0.3, dissipation=1e-4, density=1100.0, radius=3e-3)

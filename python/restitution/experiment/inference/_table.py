@@ -13,9 +13,9 @@ from scipy.interpolate import Akima1DInterpolator, RegularGridInterpolator
 
 from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.parameters import ParameterError, Problem
-from restitution.experiment.inference._drops import averaged, scatters_between, together, usual_between
+from restitution.experiment.flight.chain import USUAL_BETWEEN
 from restitution.experiment.inference._family import Family
-from restitution.experiment.inference._likelihood import Density
+from restitution.experiment.inference._likelihood import Density, averaged, scatters_between, together
 from restitution.experiment.inference._series import Series
 
 _GRID = 61
@@ -148,7 +148,8 @@ def table(
     width, narrow = _widths(series, densities)
     taus, weights = np.zeros(1), np.ones(1)
     if len(series) > 1:
-        usual = usual_between(series)
+        # The scale of the prior of what lies between them, in units of the parameter.
+        usual = USUAL_BETWEEN / float(np.mean([np.abs(one.slopes).mean() for one in series]))
         taus, weights = scatters_between(usual, narrow)
         width = max(width, usual, float(np.ptp([one.observed[0] for one in series])))
     # Fine where the best balls determine the parameter well, extended to where the worst do.
