@@ -10,7 +10,7 @@ import pytest
 import restitution as rs
 from restitution._internal.parameters import ParameterError, Problem
 from restitution.experiment.listen import Setting, analyse, write
-from restitution.experiment.listen._agreement import compared
+from restitution.experiment.listen._shape import compared
 
 DIAMETER, DROP = 6e-3, 0.1
 

@@ -6,14 +6,17 @@ from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
 
 from restitution import flight
+from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.arrays import flag
 from restitution._internal.datasets import put
 from restitution._internal.files import check, check_apart, path_from, whole_file
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.text import digits, with_error
-from restitution.experiment.flight.times import DOUBLED, FLAGS
+from restitution.experiment.flight.times import DOUBLED, DOUBTFUL, FLAGS, GOOD
 from restitution.experiment.listen._analysis import (
     Analysis,
     Recording,
@@ -23,13 +26,33 @@ from restitution.experiment.listen._analysis import (
     paths_of,
     spread,
 )
-from restitution.experiment.listen._figures import close_ups, drawn_shape, waveform
 from restitution.experiment.listen._setting import Setting, checked
 from restitution.experiment.listen._shape import Shape
+from restitution.experiment.sound.load import load
 from restitution.figures.report import Section, drawing, page, paragraph, prose, table, text
+from restitution.figures.style import COLORS, PAGE, panels, styled
 
 _FAR = 10.0
 """Laws that are worse by this, in Akaike's criterion, are in the table and not in the figure."""
+_MARKS = {GOOD: COLORS[0], DOUBTFUL: COLORS[1], DOUBLED: COLORS[3]}
+_COLUMNS = 1400
+"""Pixels across which the highest and the lowest sample are drawn."""
+_CLOSE_UPS = 6
+_BEFORE, _AFTER = 1.5e-3, 4e-3
+_PARAMETERS = {
+    "normal": r"$\varepsilon_n$",
+    "beta": r"$\beta$ ((s/m)$^{1/5}$)",
+    "yield_speed": "yield speed (m/s)",
+}
+_LEAST = -12.0
+"""Likelihoods below this, in the logarithm, are treated as zero."""
+_NAMES = {
+    "normal": "ε_n",
+    "elongation": "L/R",
+    "scatter": "scatter of ε_n",
+    "out_of_roundness": "out-of-roundness (µm)",
+    "roughness": "or, of a round ball, Ra (µm)",
+}
 
 
 def write(file: Path | Sequence[Path], out: Path, setting: Setting, *, replace: bool = False) -> Analysis:
@@ -160,6 +183,8 @@ def _recording(given: Recording, setting: Setting) -> list[str]:
     if not heard_in(given.heard):
         return [table(["", ""], rows, caption="Set-up")]
     attrs = given.heard.attrs
+    samples, rate = load(given.path, None)
+    sound = samples[:, attrs["channel"]]
     rows[:0] = [
         ["sample rate", f"{attrs['rate']:g} Hz"],
         ["channel", str(attrs["channel"])],
@@ -167,8 +192,11 @@ def _recording(given: Recording, setting: Setting) -> list[str]:
         ["rule for the onset", text(attrs["rule"])],
     ]
     return [
-        drawing(waveform(given), "The sound against time, with a mark at each impact."),
-        drawing(close_ups(given), "Onsets, from the first impact to the last, with their standard error."),
+        drawing(_waveform(given.heard, sound, rate), "The sound against time, with a mark at each impact."),
+        drawing(
+            _close_ups(given.heard, sound, rate),
+            "Onsets, from the first impact to the last, with their standard error.",
+        ),
         table(["", ""], rows, caption="Recording and set-up"),
     ]
 
@@ -215,11 +243,11 @@ def _shape(found: Shape) -> list[str]:
     for name, values in drawn.data_vars.items():
         low, middle, high = np.quantile(values, (0.05, 0.5, 0.95))
         scale = 1e6 if name in ("out_of_roundness", "roughness") else 1.0
-        digits = 6 if name in ("normal", "beta", "yield_speed") else 3
+        digits = 6 if name in _PARAMETERS else 3
         words = _NAMES.get(str(name), str(name).replace("_", " "))
         rows.append([prose(words), *(f"{scale * x:.{digits}g}" for x in (middle, low, high))])
     parts += [
-        drawing(drawn_shape(found.draws), "Draws of the posterior, and the likelihood of the shape alone."),
+        drawing(_drawn_shape(found.draws), "Draws of the posterior, and the likelihood of the shape alone."),
         table(
             ["", "median", "5 %", "95 %"], rows, caption="Posterior: median and quantiles", numbers=(1, 2, 3)
         ),
@@ -233,15 +261,6 @@ def _shape(found: Shape) -> list[str]:
         ),
     ]
     return parts
-
-
-_NAMES = {
-    "normal": "ε_n",
-    "elongation": "L/R",
-    "scatter": "scatter of ε_n",
-    "out_of_roundness": "out-of-roundness (µm)",
-    "roughness": "or, of a round ball, Ra (µm)",
-}
 
 
 def _budget(found: Shape) -> list[str]:
@@ -284,3 +303,66 @@ def _impacts(analysis: Analysis) -> str:
     )
     head = ["row", "series", "flag", "time (s)", "error (µs)", "v (m/s)", "ε"]
     return table(head, rows, caption="All impacts, with their standard errors", numbers=(3, 4, 5, 6))
+
+
+@styled
+def _drawn_shape(draws: xr.DataTree) -> Figure:
+    """Draw the posterior: draws of the parameter of ε_n against L/R, and the likelihood of L/R alone."""
+    found = draws["posterior"].to_dataset()
+    [name] = [str(name) for name in found.data_vars if name in _PARAMETERS]
+    figure, [[joint, profile]] = panels(PAGE, 2.6, 1, 2)
+    joint.plot(found.elongation.values.ravel(), found[name].values.ravel(), ".", markersize=1.5, alpha=0.4)
+    joint.set_xscale("log")
+    joint.set_xlabel("$L/R$")
+    joint.set_ylabel(_PARAMETERS[name])
+    likelihood = draws["likelihood"].to_dataset()
+    profile.plot(likelihood.elongation, np.maximum(likelihood.profile, _LEAST), color=COLORS[0])
+    profile.set_xscale("log")
+    profile.set_ylim(_LEAST, 1.0)
+    profile.set_xlabel("$L/R$")
+    profile.set_ylabel(r"$\ln$ likelihood, less its largest")
+    return figure
+
+
+@styled
+def _waveform(heard: xr.Dataset, sound: Array, rate: float) -> Figure:
+    """Draw the whole recording with a mark at each impact."""
+    figure, [[axes]] = panels(PAGE, 2.4)
+    step = max(sound.size // _COLUMNS, 1)
+    whole = sound[: sound.size // step * step].reshape(-1, step)
+    times = (np.arange(whole.shape[0]) + 0.5) * step / rate
+    axes.fill_between(times, whole.min(axis=1), whole.max(axis=1), color="0.6", linewidth=0.3)
+    top = float(np.abs(sound).max())
+    for code, color in _MARKS.items():
+        at = heard.time.values[heard.flag.values == code]
+        if at.size:
+            axes.vlines(at, 1.05 * top, 1.2 * top, color=color, linewidth=0.8, label=FLAGS[code])
+    axes.set_xlim(0.0, sound.size / rate)
+    axes.set_ylim(-1.1 * top, 1.25 * top)
+    axes.set_xlabel("time (s)")
+    axes.set_ylabel("sound (full scale 1)")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="lower right", ncols=3)
+    return figure
+
+
+@styled
+def _close_ups(heard: xr.Dataset, sound: Array, rate: float) -> Figure:
+    """Draw a few impacts, from the first to the last, with their onsets and standard errors."""
+    heard = heard.isel(impact=np.flatnonzero(heard.flag.values <= DOUBTFUL))
+    chosen = np.unique(np.linspace(0, heard.sizes["impact"] - 1, _CLOSE_UPS).astype(int))
+    figure, rows = panels(PAGE, 3.4, 2, 3)
+    places = [axes for row in rows for axes in row]
+    for axes, place in zip(places, chosen, strict=False):
+        time, error = float(heard.time[place]), float(heard.uncertainty[place])
+        begin, end = (int(np.clip((time + part) * rate, 0, sound.size)) for part in (-_BEFORE, _AFTER))
+        axes.plot((np.arange(begin, end) / rate - time) * 1e3, sound[begin:end], color="0.3", linewidth=0.6)
+        axes.axvspan(-1e3 * error, 1e3 * error, color=_MARKS[int(heard.flag[place])], alpha=0.3, linewidth=0)
+        axes.axvline(0.0, color=_MARKS[int(heard.flag[place])], linewidth=0.8)
+        axes.set_title(f"{time:.4f} s", fontsize=8)
+        axes.set_xlim(-1e3 * _BEFORE, 1e3 * _AFTER)
+    for axes in places[len(chosen) :]:
+        axes.set_visible(False)
+    for axes in rows[-1]:
+        axes.set_xlabel("time from the onset (ms)")
+    return figure
