@@ -3,8 +3,7 @@
 from restitution.analytic._first_impact import first_impact
 from restitution.analytic._frozen import FirstImpact
 from restitution.analytic._near_round import near_round
-from restitution.analytic._rough_contact import RoughContact, rough_contact
-from restitution.analytic._rough_impact import rough_impact, rough_spin
+from restitution.analytic._rough import RoughContact, rough_contact, rough_impact, rough_spin
 from restitution.analytic._threshold import negative_threshold
 
 __all__ = [

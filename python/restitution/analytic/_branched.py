@@ -15,9 +15,8 @@ from scipy.integrate import quad
 from restitution.analytic._curve import Branch, Curve
 from restitution.analytic._frozen import FirstImpact, Values, cosine_of, floats, scalar
 from restitution.analytic._normal import Fall
-from restitution.analytic._orientation import Floats
+from restitution.analytic._orientation import Floats, Tilt
 from restitution.analytic._panels import nodes, roots, solve
-from restitution.analytic._tilt import Tilt
 from restitution.bodies import Body, RoughSphere, Turned
 
 _NEARLY_VERTICAL = 1e-8  # rad, whose square is rounding

@@ -88,9 +88,9 @@ class Curve:
         """Parts with one formula each, ascending."""
         outline = Outline.of(self.body)
         impulse = Impulse(self.law, outline.inertia)
+        heights = [self.fall.height(speed) / outline.unit for speed in kinks(self.law.normal)]
         found: list[Piece] = []
         for side in outline.sides:
-            heights = [self.fall.height(speed) / outline.unit for speed in kinks(self.law.normal)]
             cosines = [cosine for height in heights for cosine in side.hull.cosines(height)]
             bends = [float(np.arccos(c)) for c in cosines if -1.0 < c < 1.0]
             for low, high in _between(side.low, side.high, bends):

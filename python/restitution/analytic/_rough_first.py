@@ -15,8 +15,7 @@ from restitution.analytic._branched import BranchedFirstImpact
 from restitution.analytic._curve import Branch
 from restitution.analytic._frozen import Values, cosine_of, scalar
 from restitution.analytic._normal import coefficient
-from restitution.analytic._orientation import Floats
-from restitution.analytic._tilt import Tilt
+from restitution.analytic._orientation import Floats, Tilt
 from restitution.bodies import RoughSphere
 
 _FARTHEST = 14.0
