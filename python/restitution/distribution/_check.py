@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from restitution import _core
+from restitution._internal.process import uninterrupted
 from restitution._internal.resources import checked_threads
 from restitution.distribution._ensemble import BATCHES, Impacts
 from restitution.distribution._nodes import POINT
@@ -47,9 +48,8 @@ class Check:
         """
         velocity, restitution = map(np.ascontiguousarray, (block.velocity, block.restitution))
         number = checked_threads(threads)
-        interrupted = self._levels.add(self.table.mixture, POINT, velocity, restitution, block.first, number)
-        if interrupted:
-            raise KeyboardInterrupt from interrupted
+        found = self._levels.add(self.table.mixture, POINT, velocity, restitution, block.first, number)
+        uninterrupted(None, found)
 
     def count(self, interval: int) -> Ints:
         """Count the impacts of an interval in each of 4096 equal parts of [0, 1] that u falls into."""

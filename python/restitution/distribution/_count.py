@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from restitution import _core
+from restitution._internal.process import uninterrupted
 from restitution._internal.resources import checked_threads
 from restitution.distribution._ensemble import BATCHES, Impacts, Look
 from restitution.distribution._table import Floats, Histogram, starts
@@ -56,9 +57,8 @@ class Counter:
     def add(self, block: Impacts, condition: Floats | None = None, threads: int | None = None) -> None:
         """Count the impacts from the first node up to the last that have a restitution, and a condition."""
         number = checked_threads(threads)
-        interrupted = self._counter.add(block.velocity, block.restitution, condition, block.first, number)
-        if interrupted:
-            raise KeyboardInterrupt from interrupted
+        found = self._counter.add(block.velocity, block.restitution, condition, block.first, number)
+        uninterrupted(None, found)
         self.__dict__.pop("_table", None)
 
     @cached_property

@@ -6,17 +6,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, NullFormatter, StrMethodFormatter
 
+from restitution.distribution._store import in_gaps
 from restitution.distribution._table import Floats
 from restitution.distribution._tabulated import TabulatedDistribution
-from restitution.distribution._text import in_gaps
 from restitution.figures import pieces
 from restitution.figures import style as fg
 
 _LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 _CONFIDENCE = 1.96
 """Standard errors to either side of a band that holds the truth with probability 0.95."""
-_VELOCITY = r"impact velocity $v_G^n$ (m/s)"
-_RESTITUTION = r"coefficient of restitution $\varepsilon$"
 
 
 def _ticks(low: float, high: float) -> list[float]:
@@ -43,7 +41,7 @@ def draw(dist: TabulatedDistribution, *, style: fg.Style | None = None) -> Figur
     for k in range(4):
         _density(densities, dist, float(met[(k + 1) * (met.size - 1) // 5]), fg.colors()[k])
     densities.set_yscale("log")
-    densities.set_xlabel(_RESTITUTION)
+    densities.set_xlabel(fg.RESTITUTION)
     densities.set_ylabel(r"$p(\varepsilon\,|\,v)$")
     # What all but touches ε = -1, where chattering bodies are, may leave the panel at the top.
     middle = max(0.5 / np.ptp(dist.clamped().ppf([0.25, 0.75], v)) for v in speeds)
@@ -77,7 +75,7 @@ def draw(dist: TabulatedDistribution, *, style: fg.Style | None = None) -> Figur
     for axes, name in ((quantiles, "a"), (densities, "b"), (deviation, "c"), (distance, "d")):
         fg.letter(axes, f"({name})", left=axes in (quantiles, densities))
         if axes is not densities:
-            axes.set_xlabel(_VELOCITY)
+            axes.set_xlabel(fg.VELOCITY)
             pieces.plain_log(axes, _ticks(speeds[0], speeds[-1]))
             axes.set_xlim(speeds[0], speeds[-1])
     for row in conditional:
@@ -122,11 +120,11 @@ def _given(row: list[Axes], dist: TabulatedDistribution) -> None:
             label=label,
             linewidth=fg.points(0.7),
         )
-    row[0].set_xlabel(_VELOCITY)
-    row[0].set_ylabel(_RESTITUTION)
+    row[0].set_xlabel(fg.VELOCITY)
+    row[0].set_ylabel(fg.RESTITUTION)
     pieces.plain_log(row[0], _ticks(speeds[0], speeds[-1]))
     row[0].set_xlim(speeds[0], speeds[-1])
-    row[1].set_xlabel(_RESTITUTION)
+    row[1].set_xlabel(fg.RESTITUTION)
     row[1].set_ylabel(rf"$p(\varepsilon\,|\,v, z)$ at {speeds[near]:.3g} m/s")
     row[1].set_yscale("log")
     for axes, name in zip(row, "ef", strict=True):
@@ -144,7 +142,7 @@ def _quantiles(axes: Axes, dist: TabulatedDistribution) -> None:
         if dist.has_errors:
             band = _CONFIDENCE * dist.clamped().ppf_error(q, v)
             axes.fill_between(v, x - band, x + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
-    axes.set_ylabel(_RESTITUTION)
+    axes.set_ylabel(fg.RESTITUTION)
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.45 * (high - low))  # room for the panel's letter and the legend
     axes.legend(loc="upper right", ncols=3, title="quantiles" + (", 95 % bands" if dist.has_errors else ""))

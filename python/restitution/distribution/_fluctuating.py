@@ -23,11 +23,10 @@ from restitution.distribution._check import Check, largest_distance, warn_of_dis
 from restitution.distribution._ensemble import Ensemble, Impacts
 from restitution.distribution._from_statistics import from_statistics
 from restitution.distribution._learn import Given, checked_speeds, condition, learn
-from restitution.distribution._memory import correlations
 from restitution.distribution._store import sealed, unsealed
+from restitution.distribution._table import Floats
 from restitution.distribution._tabulated import TabulatedDistribution
-from restitution.distribution._text import released
-from restitution.distribution.sources import header, module
+from restitution.distribution.sources import header, module, released
 from restitution.drop import energy
 from restitution.drop.recorded import check_filled, check_successive, records
 from restitution.drop.release import RandomHeight
@@ -38,6 +37,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from restitution.figures.style import Style
+
+_IMAGES = (".png", ".pdf", ".svg")
 
 
 class FluctuatingRestitution(TabulatedDistribution):
@@ -330,7 +331,7 @@ class FluctuatingRestitution(TabulatedDistribution):
             block = Impacts(velocity, restitution, fraction)
             z = condition(self.given, block, self._table)
             levels["p(ε | v, z)"] = self._conditional.value("cdf", restitution, speed, z)
-        return correlations(levels, lags)
+        return _correlations(levels, lags)
 
     def summary(self) -> str:
         """Summarise in a few lines what was learned and how well; a notebook shows the text as it reads."""
@@ -387,12 +388,63 @@ class FluctuatingRestitution(TabulatedDistribution):
         return f"<FluctuatingRestitution: {about}>"
 
 
+def image_format(path: Path) -> str:
+    """Return the format of a figure by the end of its name."""
+    if path.suffix.lower() not in _IMAGES:
+        raise ParameterError(wrong("figure", path.name, f"a name that ends in {', '.join(_IMAGES)}"))
+    return path.suffix[1:].lower()
+
+
 def image(dist: FluctuatingRestitution, suffix: str) -> bytes:
     """Draw and encode; without a date, so that the same distribution gives the same bytes."""
     dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
     content = io.BytesIO()
     dist.figure().savefig(content, format=suffix, dpi=300, metadata=dated.get(suffix))
     return content.getvalue()
+
+
+def _correlations(levels: dict[str, Floats], lags: int) -> xr.Dataset:
+    """Correlate quantile levels, and their distances from the median, over impacts of the same particle.
+
+    Parameters
+    ----------
+    levels : dict of ndarray, shape (particles, impacts)
+        Quantile levels u by the name of the distribution that they belong to; NaN where there is none. Under
+        that distribution they are uniform on [0, 1], so that mean and variance are known.
+    lags : int
+        Largest number of impacts between the two of a pair.
+    """
+    names = list(levels)
+    shape = (len(names), lags)
+    found = {name: np.empty(shape) for name in ("level", "level_error", "spread", "spread_error")}
+    for row, name in enumerate(names):
+        u = levels[name]
+        for kind, deviation in (
+            ("level", (u - 0.5) * np.sqrt(12.0)),
+            ("spread", (np.abs(u - 0.5) - 0.25) * np.sqrt(48.0)),
+        ):
+            for lag in range(1, lags + 1):
+                product = deviation[:, :-lag] * deviation[:, lag:]
+                pairs = np.isfinite(product)
+                number = pairs.sum(axis=1)
+                sums = np.where(pairs, product, 0.0).sum(axis=1)
+                correlation = sums.sum() / max(number.sum(), 1)
+                scatter = np.sqrt(np.sum((sums - correlation * number) ** 2)) / max(number.sum(), 1)
+                found[kind][row, lag - 1] = correlation
+                found[f"{kind}_error"][row, lag - 1] = scatter
+    about = {
+        "level": "autocorrelation of the quantile level of restitution",
+        "level_error": "standard error of level, over particles",
+        "spread": "autocorrelation of the distance of the quantile level from the median",
+        "spread_error": "standard error of spread, over particles",
+    }
+    return xr.Dataset(
+        {
+            name: (("distribution", "lag"), values, {"long_name": about[name]})
+            for name, values in found.items()
+        },
+        coords={"distribution": names, "lag": np.arange(1, lags + 1)},
+    )
 
 
 def _runs(

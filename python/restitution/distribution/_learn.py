@@ -10,6 +10,7 @@ import xarray as xr
 from restitution import _core
 from restitution._internal.arrays import check_each, either, reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.process import uninterrupted
 from restitution._internal.resources import checked_threads, progress_bar
 from restitution.distribution import _nodes
 from restitution.distribution._check import Check
@@ -51,13 +52,14 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
         if nodes.size == 2:
             nodes = pilot.density.speeds(pilot.scale)
         everywhere = [np.zeros(1)] * nodes.size
-        sample = Sample(pilot.blocks(), nodes, _unconditional)
+        sample = Sample(pilot.blocks(), nodes, lambda _: None)
         _enough(sample, nodes, pilot.scale)
         edges = _edges(sample, pilot.scale, nodes, everywhere)
         del sample
         counter = Counter(nodes, everywhere, edges)
         met = _nodes.Met(nodes[0], nodes[-1])
-        counter.add_all(met.watch(pilot.whole(advance, last=given is None)), _unconditional, ensemble.threads)
+        blocks = met.watch(pilot.whole(advance, last=given is None))
+        counter.add_all(blocks, lambda _: None, ensemble.threads)
         counted = counter.counted()
         del counter
         table = Table.of(nodes, counted.histograms)
@@ -92,9 +94,7 @@ def _energy(ensemble: Ensemble) -> dict[str, Any]:
     table, _, interrupted = _core.statistics(
         few.parameters(), edges, checked_threads(ensemble.threads), None, parts
     )
-    if interrupted:
-        raise KeyboardInterrupt from interrupted
-    found = dataset_of(few, edges, table).attrs
+    found = dataset_of(few, edges, uninterrupted(table, interrupted)).attrs
     return {name: found[name] for name in LEDGER if name in found}
 
 
@@ -131,10 +131,6 @@ def _at_nodes(sample: Sample, nodes: Floats, conditions: list[Floats]) -> Iterat
             above = z > group[k - 1] if k > 0 else np.ones(z.size, dtype=bool)
             below = z < group[k + 1] if k + 1 < group.size else np.ones(z.size, dtype=bool)
             yield restitution[above & below], f"{where} and condition {condition:.4g}"
-
-
-def _unconditional(_: Impacts) -> None:
-    return None
 
 
 def condition(given: Given, block: Impacts, table: Table, threads: int | None = None) -> Floats:

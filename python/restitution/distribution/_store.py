@@ -5,6 +5,7 @@ from hashlib import blake2b
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.arrays import check_each, reals
@@ -172,6 +173,19 @@ def table(data: xr.Dataset, prefix: str = "") -> Table:
         edges=data[f"{prefix}restitution_edge"].to_numpy(),
         cumulative=data[f"{prefix}probability_below"].to_numpy(),
     )
+
+
+def gaps(data: xr.Dataset) -> Floats:
+    """Return the ends of the ranges of speed between which no impact was seen, in m/s; shape (gaps, 2)."""
+    if "gap_lowest" not in data:
+        return np.empty((0, 2))
+    return np.stack([data[f"gap_{name}"].to_numpy() for name in ("lowest", "highest")], axis=1)
+
+
+def in_gaps(data: xr.Dataset, v: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    """Mark the speeds near which no impact was seen."""
+    speeds, ends = np.asarray(v)[..., None], gaps(data)
+    return np.asarray(np.any((speeds >= ends[:, 0]) & (speeds < ends[:, 1]), axis=-1))
 
 
 FORMAT = 1

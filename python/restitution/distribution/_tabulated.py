@@ -18,7 +18,6 @@ from restitution._internal.resources import check_size
 from restitution.distribution import _store
 from restitution.distribution._learn import Given
 from restitution.distribution._table import Floats, Table
-from restitution.distribution._text import gaps
 
 Numbers: TypeAlias = npt.NDArray[Any] | Sequence[float]
 Values: TypeAlias = Any  # np.float64 for scalar arguments, an array of floats otherwise
@@ -63,7 +62,7 @@ class TabulatedDistribution:
     @property
     def gaps(self) -> Floats:
         """Ends of the ranges of speed between which no impact was seen, in m/s; shape (gaps, 2)."""
-        return gaps(self.data)
+        return _store.gaps(self.data)
 
     def clamped(self) -> Self:
         """Return the same distribution, with speeds and conditions clamped to the learned range."""

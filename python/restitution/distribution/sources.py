@@ -6,31 +6,49 @@ seen (checked), or has speeds without impacts between others (gaps).
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
+from textwrap import wrap
+from typing import Any
 
+import numpy as np
 import xarray as xr
 
+from restitution._internal.parameters import ParameterError, wrong
 from restitution.distribution import _store
+from restitution.distribution._check import largest_distance
+from restitution.distribution._store import gaps
 from restitution.distribution._table import Floats, Ints
-from restitution.distribution._text import about, checked_name, gaps
+from restitution.drop.energy import percent
 
 _PER_LINE, _PER_STATEMENT = 4, 400  # numbers
+_LEFT_OUT = (
+    "all_impacts",
+    "energy_created_impacts",
+    "title",
+    "Conventions",
+    "source",
+    "beyond",
+    "version",
+    "references",
+)
+_INDENTED: dict[str, Any] = {"initial_indent": "  ", "subsequent_indent": "    "}
+_FEW = 40
 
 
 def header(data: xr.Dataset, name: str) -> str:
     """Write the header; see `FluctuatingRestitution.to_c`."""
-    words = {"GUARD": f"{checked_name(name).upper()}_H", "NODES": str(data["velocity"].size)}
+    words = {"GUARD": f"{_checked_name(name).upper()}_H", "NODES": str(data["velocity"].size)}
     words |= {"GAPS": str(len(gaps(data))), "NAME": name}
     arrays = (_in_c(f"{name}_{key}", values) for key, values in _arrays(data).items())
-    return _filled("sampler.h", data, (f" * {line}" for line in about(data)), arrays, words)
+    return _filled("sampler.h", data, (f" * {line}" for line in _about(data)), arrays, words)
 
 
 def module(data: xr.Dataset, name: str) -> str:
     """Write the module; see `FluctuatingRestitution.to_fortran`."""
-    words = {"NAME": checked_name(name)}
+    words = {"NAME": _checked_name(name)}
     arrays = (line for key, values in _arrays(data).items() for line in _in_fortran(f"{name}_{key}", values))
-    return _filled("sampler.f90", data, (f"!> {line}" for line in about(data)), arrays, words)
+    return _filled("sampler.f90", data, (f"!> {line}" for line in _about(data)), arrays, words)
 
 
 def _filled(
@@ -93,3 +111,72 @@ def _number(value: float) -> str:
 def _chunks(values: Floats | Ints, size: int) -> Iterator[Floats | Ints]:
     """Cut an array into pieces of at most `size`."""
     return (values[start : start + size] for start in range(0, values.size, size))
+
+
+def _checked_name(name: str) -> str:
+    """Refuse what is not an identifier in C, C++ and Fortran."""
+    if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,23}", name):
+        allowed = "a letter and then at most 23 letters, digits and underscores"
+        raise ParameterError(wrong("name", name, allowed))
+    return name
+
+
+def _about(data: xr.Dataset) -> Iterator[str]:
+    """Yield the lines on the origin and the range of the numbers."""
+    attrs = data.attrs
+    yield f"Coefficient of restitution at random, p(eps | v): {_ascii(attrs['source'])}."
+    yield ""
+    for name, value in attrs.items():
+        if name not in _LEFT_OUT:
+            yield from wrap(f"{_ascii(name)} = {_ascii(_short(value))}", 90, **_INDENTED)
+    if "release_height" in attrs:
+        yield f"Particles were {released(attrs)}."
+    if share := attrs.get("energy_created_share", 0.0):
+        yield f"{percent(share)} of the impacts created kinetic energy: a gas of it may heat itself."
+    yield ""
+    low, high = float(data["velocity"][0]), float(data["velocity"][-1])
+    clamps = attrs["beyond"] == "clamp"
+    beyond = "are taken as the nearest of these" if clamps else "give NaN"
+    yield f"v is the normal impact velocity in m/s, from {low!r} to {high!r}; others {beyond}."
+    for start, end in gaps(data):
+        between = "speeds there are interpolated" if clamps else "speeds there give NaN"
+        yield f"No impact was seen between {start:.6g} and {end:.6g} m/s; {between}."
+    yield "u1 and u2 are independent uniform random numbers in [0, 1), which the caller draws."
+    if "given" in attrs:
+        yield f"z in [0, 1] is the condition: {_ascii(data['given'].attrs['long_name'])}."
+        unseen = "is taken as the nearest one seen" if clamps else "gives NaN"
+        yield f"A z that no impact had at that speed {unseen}."
+    if "ks_distance" in data:
+        yield from wrap(f"At most {largest_distance(data)}.", 90)
+
+
+def _ascii(value: object) -> str:
+    """Write a value so that it neither ends nor begins a comment in any language."""
+    text = " ".join(str(value.tolist() if hasattr(value, "tolist") else value).split())
+    text = text.encode("ascii", "replace").decode("ascii")
+    text = "".join(letter if letter.isprintable() else "?" for letter in text)
+    for mark in ("*/", "/*", "??"):  # the last begins a trigraph
+        while mark in text:
+            text = text.replace(mark, " ".join(mark))
+    return text
+
+
+def _short(value: object) -> object:
+    """Abbreviate a long list to its number of values, the least and the greatest."""
+    numbers = np.asarray(value)
+    if numbers.size <= _FEW or numbers.dtype.kind not in "fiu":
+        return value
+    return f"{numbers.size} numbers from {numbers.min():.9g} to {numbers.max():.9g}"
+
+
+def released(attrs: Mapping[str, Any]) -> str:
+    """Say from what heights the particles were released."""
+    heights = attrs["release_height"]
+    if isinstance(heights, str):  # drawn
+        low, high = attrs["release_height_range"]
+        return f"released from heights that were drawn from {low:.6g} to {high:.6g} m"
+    several = np.atleast_1d(heights)
+    if several.size == 1:
+        return f"released from {several[0]:.6g} m"
+    text = f"released from {several.size} heights, {several.min():.6g} to {several.max():.6g} m"
+    return f"{text}, spread about {attrs['heights_about']:.6g} m" if "heights_about" in attrs else text

@@ -104,7 +104,7 @@ contains
     node = NAME_below(NAME_velocity, v)
     if (.not. (z >= minval(NAME_given_lowest(node:node + 1)) &
       .and. z <= maxval(NAME_given_highest(node:node + 1)))) then
-      x = ieee_value(x, ieee_quiet_nan)
+      x = ieee_value(v, ieee_quiet_nan)
       return
     end if
 @end
