@@ -12,7 +12,7 @@ import pytest
 import restitution as rs
 from reference.command import Program
 from restitution import fit
-from restitution.fit import _in_parts
+from restitution.fit import _result
 from restitution.fit._result import Fit
 
 SAMPLES = np.concatenate(
@@ -42,7 +42,7 @@ def test_parts_have_the_bits_of_the_whole(family: str, monkeypatch: pytest.Monke
         return *values, one.pdf(points), one.logpdf(points), one.cdf(points)
 
     whole = found()
-    monkeypatch.setattr(_in_parts, "PART", 64)
+    monkeypatch.setattr(_result, "PART", 64)
     for part, expected in zip(found(), whole, strict=True):
         np.testing.assert_array_equal(part, expected)
     assert (one.cdf(0.9).shape, one.rvs(0).shape) == ((), (0,))

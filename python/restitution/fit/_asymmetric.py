@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from scipy import optimize, special, stats
 
-from restitution.fit._counts import Counts, Unfrozen, fit_counts
-from restitution.fit._result import Array, Fit, fitted
+from restitution.fit._counts import Counts, Unfrozen, fit_counts, fitted
+from restitution.fit._result import Array, Fit
 from restitution.fit.source import Samples, Window, cusp, taken
 
 
@@ -68,9 +68,8 @@ def asymmetric_laplace(
         above, below = float(np.sum(np.maximum(x - m, 0))), float(np.sum(np.maximum(m - x, 0)))
     total = sqrt(above) + sqrt(below)
     a, b = sqrt(above) * total / x.size, sqrt(below) * total / x.size
-    free = 3 if location is None else 2
-    density = frozen(1.0, m, a, b)
-    return fitted("asymmetric Laplace", x, density, free=free, location=m, above=a, below=b)
+    named = {"location": m, "above": a, "below": b}
+    return fitted("asymmetric Laplace", x, frozen(1.0, m, a, b), fixed=int(location is not None), **named)
 
 
 def _best_cusp(x: Array) -> tuple[float, float, float]:
@@ -120,7 +119,6 @@ def asymmetric_power(
         return _counted("asymmetric power", x, location, None)
     start = asymmetric_laplace(x, location).parameters["location"]
     spread = float(np.mean(np.abs(x - start)))
-    free = 4 if location is None else 3
     y = (x - start) / spread
 
     def widths(m: float, k: float) -> tuple[float, float]:
@@ -145,8 +143,8 @@ def asymmetric_power(
     )
     m, k = start + spread * float(found.x[0]), exp(found.x[1])
     a, b = (spread * width for width in widths(float(found.x[0]), k))
-    density = frozen(k, m, a, b)
-    return fitted("asymmetric power", x, density, free=free, location=m, above=a, below=b, exponent=k)
+    named = {"location": m, "above": a, "below": b, "exponent": k}
+    return fitted("asymmetric power", x, frozen(k, m, a, b), fixed=int(location is not None), **named)
 
 
 def _counted(family: str, counts: Counts, location: float | None, exponent: float | None) -> Fit:
@@ -161,7 +159,7 @@ def _counted(family: str, counts: Counts, location: float | None, exponent: floa
         return unfrozen(k, m, a, b), named
 
     start = np.zeros(2 + (location is None) + (exponent is None))
-    return fit_counts(family, counts, make, start, fixed=0 if location is None else 1)
+    return fit_counts(family, counts, make, start, fixed=int(location is not None))
 
 
 class _AsymmetricPower(stats.rv_continuous):

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 from restitution._internal.arrays import generator, real, whole, word
 from restitution._internal.datasets import Content
 from restitution._internal.text import table, value, with_error
-from restitution.fit._clusters import MOST_RESAMPLES, clustered, fitted_by, refitted, specified
-from restitution.fit._counts import Counts
+from restitution.fit._clusters import MOST_RESAMPLES, begun, refitted
+from restitution.fit._counts import loglikelihood
 from restitution.fit._result import Array, Fit
 from restitution.fit.source import Parts, Window
 
@@ -164,19 +164,10 @@ def bootstrap(
     """
     resamples = whole("resamples", resamples, 2, MOST_RESAMPLES)
     random = generator("seed", seed)
-    family = specified(family, keywords)
-    source = clustered(samples, clusters, velocity)
-    pool = source.pool()
-    fit = fitted_by(family, pool)
+    family, source, pool, fit = begun(family, keywords, samples, clusters, velocity)
     again = tuple(refitted(family, source, random)[1] for _ in range(resamples))
-    losses = [fit.loglikelihood - _loglikelihood(one, pool) for one in again]
+    losses = [fit.loglikelihood - loglikelihood(one.distribution, pool) for one in again]
     return Bootstrap(fit, again, source.number, float(2.0 * np.mean(losses)))
-
-
-def _loglikelihood(fit: Fit, samples: Array | Counts) -> float:
-    if isinstance(samples, Counts):
-        return samples.loglikelihood(fit.distribution)
-    return float(np.sum(fit.logpdf(samples)))
 
 
 def _levels(confidence: float) -> list[float]:

@@ -143,9 +143,19 @@ def _labels(clusters: ArrayLike) -> NDArray[np.int64]:
     return np.asarray(clusters).ravel().astype(np.int64)
 
 
-def specified(family: Callable[..., Fit], keywords: dict[str, Any]) -> Callable[[Any], Fit]:
-    """Return a family with keywords of its own, such as the location of the cusp."""
-    return partial(family, **keywords) if callable(family) and keywords else family
+def begun(
+    family: Callable[..., Fit],
+    keywords: dict[str, Any],
+    samples: Parts,
+    clusters: ArrayLike | None,
+    velocity: Window | None,
+) -> tuple[Callable[[Any], Fit], Clustered | CountedRuns, Array | Counts, Fit]:
+    """Return a family with its keywords, the particles to draw again, their samples, and the fit of these."""
+    if callable(family) and keywords:
+        family = partial(family, **keywords)
+    source = clustered(samples, clusters, velocity)
+    pool = source.pool()
+    return family, source, pool, fitted_by(family, pool)
 
 
 def refitted(

@@ -17,7 +17,7 @@ from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.drop.bins import increasing_edges
 from restitution.drop.recorded import check_counts, counted
-from restitution.fit._result import Array, Fit
+from restitution.fit._result import Array, Fit, in_parts
 
 Maker: TypeAlias = Callable[[Array, float, float], tuple[Any, dict[str, float]]]
 """From an unbounded point, the median and the spread to a distribution and its parameters."""
@@ -114,13 +114,7 @@ class Counts(Content):
         row = int(np.searchsorted(edges, velocity, side="right")) - 1
         if not 0 <= row < edges.size - 1:
             raise ValueError(f"velocity = {velocity!r}: must be in [{edges[0]}, {edges[-1]}) m/s, the bins")
-        one = statistics.isel(velocity=row)
-        return cls(
-            edges=one["restitution_edges"].to_numpy(),
-            count=one["restitution_count"].to_numpy(),
-            below=int(one["restitution_underflow"]),
-            above=int(one["restitution_overflow"]),
-        )
+        return of_bins(statistics, slice(row, row + 1))
 
     @property
     def total(self) -> int:
@@ -156,6 +150,15 @@ class Counts(Content):
         return np.asarray(
             np.interp(reals("q", q, "probabilities", finite=False), self.cumulative(), self.edges)
         )
+
+
+def of_bins(statistics: xr.Dataset, rows: slice) -> Counts:
+    """Take the counts of some velocity bins together."""
+    below, count, above = (
+        statistics[f"restitution_{name}"].isel(velocity=rows).sum("velocity").to_numpy()
+        for name in ("underflow", "count", "overflow")
+    )
+    return Counts(statistics["restitution_edges"].to_numpy(), count, int(below), int(above))
 
 
 def fit_counts(family: str, counts: Counts, make: Maker, start: ArrayLike, *, fixed: int = 0) -> Fit:
@@ -198,11 +201,26 @@ def fit_counts(family: str, counts: Counts, make: Maker, start: ArrayLike, *, fi
     distribution, parameters = make(point, median, spread)
     if isinstance(distribution, Unfrozen):
         distribution = distribution.frozen()
+    return fitted(family, counts, distribution, fixed=fixed, **parameters)
+
+
+def fitted(
+    family: str, samples: Array | Counts, distribution: Any, *, fixed: int = 0, **parameters: float
+) -> Fit:
+    """Make the result for a density fitted to samples or counts; `fixed` parameters were not fitted."""
     return Fit(
         family=family,
         parameters=MappingProxyType({name: float(value) for name, value in parameters.items()}),
         free_parameters=len(parameters) - fixed,
-        samples=counts.total,
-        loglikelihood=counts.loglikelihood(distribution),
+        samples=samples.total if isinstance(samples, Counts) else samples.size,
+        loglikelihood=loglikelihood(distribution, samples),
         distribution=distribution,
     )
+
+
+def loglikelihood(distribution: Any, samples: Array | Counts) -> float:
+    """Return the natural logarithm of the likelihood of samples or counts."""
+    if isinstance(samples, Counts):
+        return samples.loglikelihood(distribution)
+    with np.errstate(over="ignore"):  # of a sample so far off that its density is 0
+        return float(np.sum(in_parts(distribution.logpdf, samples)))

@@ -11,8 +11,8 @@ import numpy as np
 from scipy import stats
 
 from restitution.fit._asymmetric import unfrozen
-from restitution.fit._counts import Counts, Unfrozen, fit_counts
-from restitution.fit._result import Array, Fit, fitted
+from restitution.fit._counts import Counts, Unfrozen, fit_counts, fitted
+from restitution.fit._result import Array, Fit
 from restitution.fit.source import Samples, Window, taken
 
 _FURTHEST = 1e100

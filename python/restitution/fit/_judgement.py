@@ -14,7 +14,7 @@ from restitution._internal.arrays import generator, whole
 from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.text import table, value, with_error
-from restitution.fit._clusters import MOST_RESAMPLES, Clustered, clustered, fitted_by, refitted, specified
+from restitution.fit._clusters import MOST_RESAMPLES, Clustered, begun, clustered, refitted
 from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit
 from restitution.fit.source import Parts, Window
@@ -112,10 +112,7 @@ def goodness(
     """
     resamples = whole("resamples", resamples, 1, MOST_RESAMPLES)
     random = generator("seed", seed)
-    family = specified(family, keywords)
-    source = clustered(samples, clusters, velocity)
-    pool = source.pool()
-    fit = fitted_by(family, pool)
+    family, source, pool, fit = begun(family, keywords, samples, clusters, velocity)
     observed, reached = distances(fit, pool), np.ones(2)
     null = None if source.number == fit.samples else source.following(fit, random)
     for _ in range(resamples):

@@ -12,9 +12,8 @@ from scipy import optimize, special, stats
 
 from restitution._internal.datasets import Content
 from restitution.fit._asymmetric import asymmetric_laplace, frozen
-from restitution.fit._counts import Counts, fit_counts
-from restitution.fit._in_parts import drawn, draws
-from restitution.fit._result import Array, Fit, fitted
+from restitution.fit._counts import Counts, fit_counts, fitted
+from restitution.fit._result import Array, Fit, drawn, draws
 from restitution.fit.source import Samples, Window, cusp, taken
 
 _NARROWEST = 1e-3
@@ -131,7 +130,7 @@ def cusp_mixture(samples: Samples, location: float, *, velocity: Window | None =
         raise ValueError(f"samples: {x.size} value(s); five parameters need at least six")
     spread = _spread(x, location)
     distribution, parameters = _made(_search(x, spread, location), spread, location)
-    return fitted("cusp mixture", x, distribution, free=5, **parameters)
+    return fitted("cusp mixture", x, distribution, fixed=1, **parameters)
 
 
 def _spread(x: Array, location: float) -> float:

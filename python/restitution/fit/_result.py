@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import log, sqrt
-from types import MappingProxyType
 from typing import Any
 from unicodedata import normalize
 
@@ -18,9 +17,11 @@ from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_size
 from restitution._internal.text import table, value, with_error
-from restitution.fit import _in_parts as in_parts
 
 Array = NDArray[np.float64]
+
+PART = 2**20
+"""Numbers of a part of a long array: Ctrl-C waits for a part, and SciPy keeps little meanwhile."""
 
 _LARGEST = 1e100
 _NARROWEST = 1e-100
@@ -153,14 +154,14 @@ class Fit(Content):
     def _at(self, function: Any, x: ArrayLike) -> Array:
         points = reals("x", x, "numbers", finite=False)
         with np.errstate(over="ignore"):  # so far off that the density is 0
-            return in_parts.values(function, points)
+            return in_parts(function, points)
 
     def rvs(self, size: int, seed: int | np.random.Generator = 1) -> Array:
         """Draw `size` independent values, shape (size,)."""
         number, random = whole("size", size, 0, _MOST_DRAWS), generator("seed", seed)
         if hasattr(self.distribution, "dist"):  # SciPy's own
             check_size("size", size, number, 8, "draws")
-            return in_parts.drawn(self.distribution, number, random)
+            return drawn(self.distribution, number, random)
         check_size("size", size, number, 4 * 8, "draws")  # of a mixture, from both parts
         return np.asarray(self.distribution.rvs(size=number, random_state=random))
 
@@ -204,13 +205,26 @@ def finite_samples(samples: ArrayLike, location: float | None = None) -> Array:
     return x
 
 
-def fitted(family: str, x: Array, distribution: Any, *, free: int | None = None, **parameters: float) -> Fit:
-    """Make the result for a density fitted to `x`; give `free` where some parameters were fixed."""
-    return Fit(
-        family=family,
-        parameters=MappingProxyType({name: float(value) for name, value in parameters.items()}),
-        free_parameters=len(parameters) if free is None else free,
-        samples=x.size,
-        loglikelihood=float(np.sum(distribution.logpdf(x))),
-        distribution=distribution,
-    )
+def in_parts(function: Callable[[Array], Any], x: Array) -> Array:
+    """Evaluate a function of each number by itself, part by part with the same bits; shape of `x`."""
+    if x.size <= PART:
+        return np.asarray(function(x))
+    found, points = np.empty(x.size), x.ravel()
+    for start in range(0, x.size, PART):
+        found[start : start + PART] = function(points[start : start + PART])
+    return found.reshape(x.shape)
+
+
+def draws(draw: Callable[[int], Any], number: int) -> Array:
+    """Draw in parts with a function that takes the number of draws; shape (number,)."""
+    if number <= PART:
+        return np.asarray(draw(number))
+    found = np.empty(number)
+    for start in range(0, number, PART):
+        found[start : start + PART] = draw(min(PART, number - start))
+    return found
+
+
+def drawn(distribution: Any, number: int, random: np.random.Generator) -> Array:
+    """Draw from a distribution of SciPy, which takes one number after the other."""
+    return draws(lambda some: distribution.rvs(size=some, random_state=random), number)

@@ -12,7 +12,7 @@ from restitution._internal.parameters import ParameterError, Problem, shown, wro
 from restitution.drop.bins import LARGEST
 from restitution.drop.recorded import counted as recorded_counts
 from restitution.drop.recorded import records
-from restitution.fit._counts import Counts
+from restitution.fit._counts import Counts, of_bins
 from restitution.fit._result import Array, finite_samples
 
 Window: TypeAlias = float | tuple[float, float]
@@ -56,13 +56,7 @@ def counted(statistics: xr.Dataset, velocity: Window | None) -> Counts:
     if first >= last or abs(edges[first] - low) > allowed or abs(edges[last] - high) > allowed:
         near = ", ".join(f"{v:g}" for v in edges[max(first - 1, 0) : last + 2][:6])
         raise ParameterError(wrong("velocity", velocity, f"edges of velocity bins, here {near}, …, in m/s"))
-    # What else is in the Dataset may have no sum.
-    count, below, above = (
-        statistics[f"restitution_{name}"].isel(velocity=slice(first, last)).sum("velocity").to_numpy()
-        for name in ("count", "underflow", "overflow")
-    )
-    edges = statistics["restitution_edges"].to_numpy()
-    return Counts(edges=edges, count=count, below=int(below), above=int(above))
+    return of_bins(statistics, slice(first, last))
 
 
 def recorded(data: xr.Dataset, velocity: Window | None) -> tuple[Array, NDArray[np.int64]]:
