@@ -9,6 +9,7 @@ import numpy as np
 
 from restitution import _core
 from restitution._internal.arrays import FloatArray, reals
+from restitution._internal.process import uninterrupted
 from restitution.bodies import RigidBody
 from restitution.drop.dataset import inertia_of
 from restitution.drop.recorded import RECORDS, attribute, check_frame, variables
@@ -180,9 +181,7 @@ def _sums(
     found = np.zeros((rows, 3, 4))
     for start in range(first, end, block):
         part = (start, min(start + block, end))
-        table, interrupted = _core.simulate(run.parameters(), threads, None, part=part, columns=columns)
-        if interrupted:
-            raise interrupted
+        table = uninterrupted(*_core.simulate(run.parameters(), threads, None, part=part, columns=columns))
         velocity, restitution, *states = (table[name][1] for name in columns)
         before, after = _energies(body.mass, inertia, states)
         if velocity_edges is None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, Unpack, get_args
 from restitution import _core
 from restitution._internal.arrays import either, word
 from restitution._internal.parameters import ParameterError, wrong
+from restitution._internal.process import uninterrupted
 from restitution._internal.resources import check_size, checked_threads, progress_bar
 from restitution.bodies import AnyBody
 from restitution.drop.run import Run, RunArguments, takes_run
@@ -192,7 +193,5 @@ def times_of_impacts(run: Run) -> npt.NDArray[np.float64]:
 
     NaN where an impact never happened. A Dataset of 200 particles takes ten times as long as their motion.
     """
-    table, interrupted = _core.simulate(run.parameters(), 0, None, columns=["time"])
-    if interrupted:
-        raise interrupted
+    table = uninterrupted(*_core.simulate(run.parameters(), 0, None, columns=["time"]))
     return table["time"][1]

@@ -24,9 +24,7 @@ from restitution._internal.resources import check_size, checked_threads, progres
 from restitution.bodies import AnyBody, Body, RigidBody
 from restitution.drop.dataset import made_here
 from restitution.laws import CollisionLaw
-from restitution.pair.axes import turned_axes
-from restitution.pair.materials import between
-from restitution.pair.states import read_states
+from restitution.pair.partners import between, read_states, turned_axes
 
 Phase = Literal["time", "uniform"]
 Record = Literal["moments", "state"]

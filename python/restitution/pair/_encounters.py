@@ -13,12 +13,12 @@ import xarray as xr
 from restitution import _core
 from restitution._internal.arrays import FloatArray, check_each, real, reals, whole, word
 from restitution._internal.parameters import ParameterError, Parameters, Problem, wrong
+from restitution._internal.process import uninterrupted
 from restitution._internal.resources import check_size, checked_threads, progress_bar
 from restitution.bodies import AnyBody
 from restitution.drop.dataset import made_here
 from restitution.laws import CollisionLaw
-from restitution.pair.materials import between
-from restitution.pair.states import read_states
+from restitution.pair.partners import between, read_states
 
 Columns: TypeAlias = dict[str, npt.NDArray[Any]]
 """Variables by their names."""
@@ -124,15 +124,14 @@ class Pairs:
         if not isinstance(self.other, Plane):
             law = between(law, self.other.mass / self.body.mass)
         try:
-            (found, hits), rate, interrupted = _core.encounters(
+            tables, rate, interrupted = _core.encounters(
                 self.body.compiled, other, law.compiled, self.drawn, given, wanted, threads, progress
             )
         except _core.ParameterError as error:
             bodies = {"body": self.body, "other": self.other}
             value = bodies.get(error.name, error.value)
             raise ParameterError(wrong(error.name, value, error.allowed)) from None
-        if interrupted:
-            raise interrupted
+        found, hits = uninterrupted(tables, interrupted)
         return found, hits, rate
 
 
@@ -323,8 +322,7 @@ def _rows(states: xr.Dataset, *, plane: bool) -> FloatArray:
     columns = read_states("states", states, _STATE, encounter=None, particle=2)
     if plane:
         still = [columns[0][:, 1], columns[1][:, 1], columns[2][:, 1], columns[3][:, 1, 1:]]
-        names = list(_STATE)
-        for name, values in zip(names, still, strict=True):
+        for name, values in zip(_STATE, still, strict=True):
             check_each(f"states.{name}", values, values == 0.0, "0 of the plane, z = 0, which does not move")
     return np.ascontiguousarray(np.concatenate(columns, axis=-1).reshape(len(columns[0]), -1))
 

@@ -75,7 +75,7 @@ class PairKernel:
             raise ParameterError(wrong("data", data, "the data of a PairKernel"))
         rate = rate_unit(plane=data.attrs.get("other") == "Plane")
         wanted = {name: (("encounter", *last), unit) for name, (last, _, unit) in _KEPT.items()}
-        wanted |= dict.fromkeys(_RATE, (("temperature_ratio",), rate))
+        wanted |= dict.fromkeys(("encounter_rate", "encounter_rate_error"), (("temperature_ratio",), rate))
         wanted["temperature_ratio"] = (("temperature_ratio",), "1")
         for name, (dims, unit) in wanted.items():
             if name not in data.variables:
@@ -176,8 +176,8 @@ class PairKernel:
         ratios = reals("temperature_ratios", temperature_ratios, allowed, dimensions=(1,))
         if ratios.size == 0:
             raise ParameterError(wrong("temperature_ratios", temperature_ratios, "at least one number >= 0"))
-        check_each("temperature_ratios", ratios, ratios >= 0.0, allowed)
-        check_each("temperature_ratios", ratios, np.diff(ratios, prepend=-1.0) > 0.0, allowed)
+        rising = (ratios >= 0.0) & (np.diff(ratios, prepend=-1.0) > 0.0)
+        check_each("temperature_ratios", ratios, rising, allowed)
         temperature = positive("translational_temperature", translational_temperature, "J")
         count, number = whole("encounters", encounters, 2, 2**40), checked_threads(threads)
         bins = whole("bins", bins, 1, 10**6)
@@ -320,9 +320,6 @@ _KEPT = {
     "deflection": ((), "angle between the relative velocities before and after", "rad"),
     "restitution_centres": ((), "-(u'.k)/(u.k)", "1"),
 }
-
-
-_RATE = ("encounter_rate", "encounter_rate_error")
 
 
 def _resolved(u: FloatArray, k: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

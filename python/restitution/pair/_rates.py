@@ -12,7 +12,7 @@ from restitution.bodies import AnyBody
 from restitution.drop.dataset import made_here
 from restitution.laws import CollisionLaw
 from restitution.pair._encounters import COLLAPSE, LASTED, Pairs
-from restitution.pair.axes import turned_axes
+from restitution.pair.partners import turned_axes
 
 
 def rates(

@@ -67,19 +67,11 @@ class Rates(NamedTuple):
     """Of these three by the quadrature, relative to the largest part of each."""
 
 
-_Energies = Callable[[float, float], tuple[float, float, float]]
-"""Contacts and changes of both energies, of a particle at unit density, of T_tr and T_rot."""
-
-
 class _Closure(NamedTuple):
-    of: _Energies
+    of: Callable[[float, float], tuple[float, float, float]]
+    """Contacts and changes of both energies, of a particle at unit density, of T_tr and T_rot."""
     axes: int
     """About which contacts turn a particle; E_rot = axes T_rot/2."""
-
-    def slopes(self, ratio: float) -> tuple[float, float]:
-        """Return d ln T_tr/dt and d ln T_rot/dt at T_tr = 1 and this T_rot."""
-        _, first, second = self.of(1.0, ratio)
-        return first / 1.5, second / (0.5 * self.axes * ratio)
 
 
 def _closure(body: AnyBody, law: Law, nodes: int = _NODES) -> _Closure:
@@ -207,9 +199,10 @@ def steady_ratio(body: AnyBody, law: Law) -> float:
     if not closure.axes:
         raise ParameterError(wrong("body", body, "one that contacts turn; a smooth sphere keeps its spin"))
 
-    def growth(logarithm: float) -> float:
-        first, second = closure.slopes(math.exp(logarithm))
-        return second - first
+    def growth(logarithm: float) -> float:  # of T_rot/T_tr, d ln/dt
+        ratio = math.exp(logarithm)
+        _, first, second = closure.of(1.0, ratio)
+        return second / (0.5 * closure.axes * ratio) - first / 1.5
 
     far = math.log(_RANGE)
     if not growth(-far) > 0.0 > growth(far):

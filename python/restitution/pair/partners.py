@@ -1,4 +1,4 @@
-"""Given states of bodies, as an encounter or a gas begins with."""
+"""What encounters and gases know of the bodies that meet: their material, their axes and their states."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -8,6 +8,37 @@ import xarray as xr
 
 from restitution._internal.arrays import FloatArray, check_each, reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution.bodies import AnyBody, Body, Dumbbell, LoadedSphere
+from restitution.laws import CollisionLaw, Frictionless, Law, Viscoelastic
+
+
+def between(law: CollisionLaw, mass_ratio: float = 1.0) -> CollisionLaw:
+    """Return the law of two spheres of a material, instead of one sphere and a rigid plane.
+
+    Hertz' ρ/m is (4/3)√R Y/((1 - ν²) m) of the sphere on the plane, and half of it with R_eff and m_eff of
+    two spheres, the second `mass_ratio`^(1/3) times as large as the first. β ∝ A(ρ/m)^(2/5).
+    """
+    if not isinstance(law, Law) or not isinstance(law.normal, Viscoelastic):
+        return law
+    own = law.normal.model_dump()
+    size = mass_ratio ** (1.0 / 3.0)
+    softer = 0.5 * (size / (1.0 + size)) ** 0.5 * (1.0 + mass_ratio) / mass_ratio
+    normal = Viscoelastic(**own | {"dissipation": own["dissipation"] * softer**0.4})
+    return law.model_copy(update={"normal": normal})
+
+
+def turned_axes(body: AnyBody, law: CollisionLaw) -> tuple[bool, bool, bool]:
+    """Return for each principal axis, the last that of a body of revolution, whether contacts turn it.
+
+    Without friction an impulse passes through the axis of a body of revolution, and through the centre of a
+    sphere.
+    """
+    if not isinstance(law, Frictionless) or not isinstance(body, Body):
+        return (True, True, True)
+    round_body = isinstance(body, Dumbbell) and body.separation == 0.0
+    centred = isinstance(body, LoadedSphere) and body.centre_of_mass == 0.0
+    across = not (round_body or centred)
+    return (across, across, False)
 
 
 def read_states(what: str, states: Any, parts: Mapping[str, int], **sizes: int | None) -> list[FloatArray]:
