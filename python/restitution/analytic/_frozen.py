@@ -11,8 +11,7 @@ from typing import Any, TypeAlias, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from restitution._internal.arrays import flag, function, real, reals, shape, whole
-from restitution._internal.arrays import generator as _generator
+from restitution._internal.arrays import flag, function, generator, real, reals, shape, whole
 from restitution._internal.datasets import check_state
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_size
@@ -269,7 +268,10 @@ class FirstImpact(ABC):
         lengths = None if size is None else shape("size", size)
         if lengths is not None:
             check_size("size", size, math.prod(lengths), 3 * 8, "draws")
-        drawn: float | Floats = self._drawn(np.asarray(generator(random_state).random(lengths)))
+        random = np.random.default_rng() if random_state is None else random_state
+        if not isinstance(random, np.random.RandomState):
+            random = generator("random_state", random)
+        drawn: float | Floats = self._drawn(np.asarray(random.random(lengths)))
         return drawn
 
     def _drawn(self, uniform: Floats) -> Values:
@@ -318,13 +320,6 @@ def check(body: Body | RigidBody, law: Law) -> None:
     if not isinstance(law, Law):
         raise ParameterError(wrong("law", law, LAWS))
     check_steady(law)
-
-
-def generator(random_state: RandomState) -> np.random.Generator | np.random.RandomState:
-    """Take a generator, or make one from a seed."""
-    if isinstance(random_state, np.random.Generator | np.random.RandomState):
-        return random_state
-    return np.random.default_rng() if random_state is None else _generator("random_state", random_state)
 
 
 def floats(x: ArrayLike, name: str = "x", unit: str | None = "1") -> Floats:

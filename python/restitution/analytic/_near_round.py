@@ -8,13 +8,12 @@ import xarray as xr
 
 from restitution._internal.arrays import whole
 from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution.analytic._orientation import Floats
 from restitution.bodies import Body, Dumbbell
 from restitution.drop.bins import centres, increasing_edges
 from restitution.drop.release import RandomHeight
 from restitution.drop.run import Run
 from restitution.laws import Frictionless, Law, TangentialRestitution
-
-Floats = npt.NDArray[np.float64]
 
 _ROUND = 0.2
 """Largest L/R."""

@@ -186,10 +186,8 @@ class RigidFirstImpact(FirstImpact):
         corners, pair, share, doubt = corners[full], pair[full], share[full], share[full] * doubt[full]
         points = POINTS @ corners
         element = units.element[pair]
-        values = self._restitution(
-            list(points.reshape(-1, 3).T), np.repeat(element, len(POINTS)), raised=raised
-        )
-        values = values.reshape(-1, len(POINTS))
+        down, each = list(points.reshape(-1, 3).T), np.repeat(element, len(POINTS))
+        values = self._restitution(down, each, raised=raised).reshape(-1, len(POINTS))
         middle = points[:, 3:6]
         middle = np.einsum("tpk,tpk->tp", middle, middle) ** -1.5  # solid angle over area, but for a factor
         middle *= (share / middle.sum(axis=1))[:, None]

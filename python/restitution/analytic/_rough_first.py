@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from restitution._internal.parameters import ParameterError, wrong
-from restitution.analytic._branched import BranchedFirstImpact
-from restitution.analytic._curve import Branch
+from restitution.analytic._branched import Branch, BranchedFirstImpact
 from restitution.analytic._frozen import Values, cosine_of, scalar
 from restitution.analytic._normal import coefficient
 from restitution.analytic._orientation import Floats, Tilt

@@ -80,17 +80,11 @@ class Triangles(NamedTuple):
     def parts(self) -> tuple[Floats, Floats, Floats]:
         """Return parts of the triangles: values at the corners, ascending, share and bend."""
         found = []
-        for rows, fine in ((~self.level, _quadratic(2)), (self.level, _quadratic(8))):
-            basis, corners = fine
+        for rows, (basis, corners) in ((~self.level, _quadratic(2)), (self.level, _quadratic(8))):
             values = (self.values[rows, :6] @ basis.T)[:, corners].reshape(-1, 3)
             number = len(corners)
-            found.append(
-                (
-                    np.sort(values, axis=1),
-                    np.repeat(self.share[rows] / number, number),
-                    np.repeat(self.bend[rows], number),
-                )
-            )
+            share, bend = np.repeat(self.share[rows] / number, number), np.repeat(self.bend[rows], number)
+            found.append((np.sort(values, axis=1), share, bend))
         parts, share, bend = (np.concatenate(pair) for pair in zip(*found, strict=True))
         return parts, share, bend
 
