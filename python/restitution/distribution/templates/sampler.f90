@@ -64,7 +64,8 @@ contains
     real(dp) :: u
     integer :: node, first, last
 @if checked
-    if (.not. (v >= NAME_velocity(1) .and. v <= NAME_velocity(size(NAME_velocity)))) then
+    if (.not. (v >= NAME_velocity(1) &
+      .and. v <= NAME_velocity(size(NAME_velocity)))) then
       x = ieee_value(v, ieee_quiet_nan)
       return
     end if
@@ -79,7 +80,8 @@ contains
     call NAME_choose(NAME_velocity, v, u, node)
     first = NAME_start(node) + 1
     last = NAME_start(node + 1)
-    x = NAME_quantile(NAME_edge(first:last), NAME_probability_below(first:last), u2)
+    x = NAME_quantile(NAME_edge(first:last), &
+      NAME_probability_below(first:last), u2)
   end function NAME_sample
 @if given
 
@@ -89,7 +91,8 @@ contains
     real(dp) :: u
     integer :: node, component, first, last
 @if checked
-    if (.not. (v >= NAME_velocity(1) .and. v <= NAME_velocity(size(NAME_velocity)))) then
+    if (.not. (v >= NAME_velocity(1) &
+      .and. v <= NAME_velocity(size(NAME_velocity)))) then
       x = ieee_value(v, ieee_quiet_nan)
       return
     end if
@@ -116,7 +119,8 @@ contains
     component = first - 1 + component
     first = NAME_given_start(component) + 1
     last = NAME_given_start(component + 1)
-    x = NAME_quantile(NAME_given_edge(first:last), NAME_given_probability_below(first:last), u2)
+    x = NAME_quantile(NAME_given_edge(first:last), &
+      NAME_given_probability_below(first:last), u2)
   end function NAME_sample_given
 @end
 
