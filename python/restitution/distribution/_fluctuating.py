@@ -414,37 +414,32 @@ def _correlations(levels: dict[str, Floats], lags: int) -> xr.Dataset:
     lags : int
         Largest number of impacts between the two of a pair.
     """
-    names = list(levels)
-    shape = (len(names), lags)
-    found = {name: np.empty(shape) for name in ("level", "level_error", "spread", "spread_error")}
-    for row, name in enumerate(names):
-        u = levels[name]
-        for kind, deviation in (
-            ("level", (u - 0.5) * np.sqrt(12.0)),
-            ("spread", (np.abs(u - 0.5) - 0.25) * np.sqrt(48.0)),
-        ):
-            for lag in range(1, lags + 1):
-                product = deviation[:, :-lag] * deviation[:, lag:]
-                pairs = np.isfinite(product)
-                number = pairs.sum(axis=1)
-                sums = np.where(pairs, product, 0.0).sum(axis=1)
-                correlation = sums.sum() / max(number.sum(), 1)
-                scatter = np.sqrt(np.sum((sums - correlation * number) ** 2)) / max(number.sum(), 1)
-                found[kind][row, lag - 1] = correlation
-                found[f"{kind}_error"][row, lag - 1] = scatter
+    scaled = {  # to variance 1
+        "level": [(u - 0.5) * np.sqrt(12.0) for u in levels.values()],
+        "spread": [(np.abs(u - 0.5) - 0.25) * np.sqrt(48.0) for u in levels.values()],
+    }
     about = {
         "level": "autocorrelation of the quantile level of restitution",
-        "level_error": "standard error of level, over particles",
         "spread": "autocorrelation of the distance of the quantile level from the median",
-        "spread_error": "standard error of spread, over particles",
     }
-    return xr.Dataset(
-        {
-            name: (("distribution", "lag"), values, {"long_name": about[name]})
-            for name, values in found.items()
-        },
-        coords={"distribution": names, "lag": np.arange(1, lags + 1)},
-    )
+    dims, numbers = ("distribution", "lag"), range(1, lags + 1)
+    variables: dict[str, Any] = {}
+    for kind, deviations in scaled.items():
+        found = np.array([[_correlation(one, lag) for lag in numbers] for one in deviations])
+        variables[kind] = (dims, found[..., 0], {"long_name": about[kind]})
+        text = f"standard error of {kind}, over particles"
+        variables[f"{kind}_error"] = (dims, found[..., 1], {"long_name": text})
+    return xr.Dataset(variables, coords={"distribution": list(levels), "lag": np.array(numbers)})
+
+
+def _correlation(deviation: Floats, lag: int) -> tuple[float, float]:
+    """Return the mean product of deviations of variance 1, `lag` impacts apart, and its standard error."""
+    product = deviation[:, :-lag] * deviation[:, lag:]
+    pairs = np.isfinite(product)
+    number = pairs.sum(axis=1)
+    sums = np.where(pairs, product, 0.0).sum(axis=1)
+    correlation = sums.sum() / max(number.sum(), 1)
+    return correlation, np.sqrt(np.sum((sums - correlation * number) ** 2)) / max(number.sum(), 1)
 
 
 def _runs(

@@ -9,8 +9,6 @@ from restitution.distribution._ensemble import LEARNING, Ensemble, Impacts, Look
 from restitution.distribution._nodes import Density
 from restitution.distribution._table import Floats, Ints
 
-_NONE: Floats = np.zeros(0)
-
 IMPACTS = 2_000_000
 """About as many are looked at, or all of a smaller ensemble."""
 _HELD = 2_500_000
@@ -75,46 +73,34 @@ class Pilot:
             yield from self.ensemble.blocks(LEARNING, tell, share=(self.kept, 1.0))
 
 
-@dataclass(frozen=True)
-class _Part:
-    """Impacts of a block that count, sorted by the interval between two nodes that they lie in."""
-
-    restitution: Floats
-    z: Floats
-    ends: Ints
-
-    @classmethod
-    def of(cls, block: Impacts, nodes: Floats, z: Floats | None) -> "_Part":
-        counted = (block.velocity >= nodes[0]) & (block.velocity < nodes[-1]) & np.isfinite(block.restitution)
-        if z is not None:
-            counted &= np.isfinite(z)
-        number = np.searchsorted(nodes, block.velocity[counted], side="right") - 1
-        ends = np.concatenate([[0], np.cumsum(np.bincount(number, minlength=nodes.size - 1))])
-        # Numbers of 16 bits are sorted in a fraction of the time.
-        order = np.argsort(number.astype(np.uint16) if nodes.size < 1 << 16 else number, kind="stable")
-        return cls(block.restitution[counted][order], _NONE if z is None else z[counted][order], ends)
-
-    def near(self, values: Floats, node: int) -> Floats:
-        last = self.ends.size - 1
-        return values[self.ends[max(node - 1, 0)] : self.ends[min(node + 1, last)]]
-
-
 class Sample:
     """Impacts that count between nodes."""
 
     def __init__(self, blocks: Iterable[Impacts], nodes: Floats, look: Look) -> None:
-        self._nodes = nodes
+        self._last = nodes.size - 1
         # One array of all would be copied while it is sorted, and be the most memory that learning takes.
-        self._parts = [_Part.of(block, nodes, look(block)) for block in blocks]
+        self._parts = [_by_interval(block, nodes, look(block)) for block in blocks]
 
     def impacts(self) -> Ints:
         """Count those in each interval between two nodes."""
-        return np.asarray(sum(np.diff(part.ends) for part in self._parts))
+        return np.asarray(sum(np.diff(ends) for _, _, ends in self._parts))
 
     def near(self) -> Iterator[tuple[Floats, Floats]]:
         """Yield ε and condition of the impacts in the intervals next to each node."""
-        for node in range(self._nodes.size):
-            yield (
-                np.concatenate([part.near(part.restitution, node) for part in self._parts]),
-                np.concatenate([part.near(part.z, node) for part in self._parts]),
-            )
+        for node in range(self._last + 1):
+            first, last = max(node - 1, 0), min(node + 1, self._last)
+            near = [(e[ends[first] : ends[last]], z[ends[first] : ends[last]]) for e, z, ends in self._parts]
+            restitution, z = (np.concatenate(values) for values in zip(*near, strict=True))
+            yield restitution, z
+
+
+def _by_interval(block: Impacts, nodes: Floats, z: Floats | None) -> tuple[Floats, Floats, Ints]:
+    """Return ε and condition of the impacts that count, sorted by interval, and where each interval ends."""
+    counted = (block.velocity >= nodes[0]) & (block.velocity < nodes[-1]) & np.isfinite(block.restitution)
+    if z is not None:
+        counted &= np.isfinite(z)
+    number = np.searchsorted(nodes, block.velocity[counted], side="right") - 1
+    ends = np.concatenate([[0], np.cumsum(np.bincount(number, minlength=nodes.size - 1))])
+    # Numbers of 16 bits are sorted in a fraction of the time.
+    order = np.argsort(number.astype(np.uint16) if nodes.size < 1 << 16 else number, kind="stable")
+    return block.restitution[counted][order], np.zeros(0) if z is None else z[counted][order], ends

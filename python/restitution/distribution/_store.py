@@ -58,11 +58,8 @@ def assemble(
             _errors(conditional, "given_", "given_component")
         )
         # A level of probability is met everywhere in [0, 1], however few impacts there were.
-        seen = (
-            conditional.seen
-            if given == "rotational_fraction"
-            else np.tile([[0.0], [1.0]], counted.nodes.size)
-        )
+        everywhere = np.tile([[0.0], [1.0]], counted.nodes.size)
+        seen = conditional.seen if given == "rotational_fraction" else everywhere
         for name, values in zip(("lowest", "highest"), seen, strict=True):
             text = f"{name} condition that was seen at the node"
             data[f"given_{name}"] = ("node", values, {"long_name": text, "units": "1"})
@@ -71,16 +68,10 @@ def assemble(
         if values.size:
             text = f"{name} of the speeds at which no impact was seen"
             data[f"gap_{name}"] = ("gap", values, {"long_name": text, "units": "m s-1"})
-    data["ks_distance"] = (
-        "interval",
-        check.distances(),
-        {"long_name": "Kolmogorov–Smirnov distance of fresh impacts between two nodes, upper bound"},
-    )
-    data["ks_scatter"] = (
-        "interval",
-        check.scatter(),
-        {"long_name": "part of ks_distance that the scatter of the fresh particles makes, by bootstrap"},
-    )
+    text = "Kolmogorov–Smirnov distance of fresh impacts between two nodes, upper bound"
+    data["ks_distance"] = ("interval", check.distances(), {"long_name": text})
+    text = "part of ks_distance that the scatter of the fresh particles makes, by bootstrap"
+    data["ks_scatter"] = ("interval", check.scatter(), {"long_name": text})
     data["fresh_impacts"] = ("interval", check.impacts(), {"long_name": "impacts behind ks_distance"})
     return data
 

@@ -160,8 +160,7 @@ def rates(
     >>> found.rotational < 0 < found.translational
     True
     """
-    t, ratio = _warm(translational_temperature, rotational_temperature)
-    n = positive("number_density", number_density, "m-3")
+    t, ratio, n = _gas(translational_temperature, rotational_temperature, number_density)
     fine, coarse = (_closure(body, law, nodes).of(1.0, ratio) for nodes in (_NODES, _NODES // 2))
     size = (fine[0], fine[0], fine[0] * ratio)
     error = max(abs(one - other) / of for one, other, of in zip(fine, coarse, size, strict=True))
@@ -291,8 +290,7 @@ def cooling(
     >>> bool(data["translational_temperature"][-1] < data["translational_temperature"][0])
     True
     """
-    t, ratio = _warm(translational_temperature, rotational_temperature)
-    n = positive("number_density", number_density, "m-3")
+    t, ratio, n = _gas(translational_temperature, rotational_temperature, number_density)
     at = reals("times", times, "increasing times >= 0, in s", unit="s", dimensions=(1,))
     if not len(at):
         raise ParameterError(Problem("times", " has no elements: must have one or more"))
@@ -333,11 +331,11 @@ def cooling(
     )
 
 
-def _warm(translational: float, rotational: float) -> tuple[float, float]:
-    """Check both temperatures; return the first and T_rot/T_tr."""
+def _gas(translational: float, rotational: float, number_density: float) -> tuple[float, float, float]:
+    """Check both temperatures and the density; return T_tr, T_rot/T_tr and the density."""
     t = positive("translational_temperature", translational, "J")
     r = positive("rotational_temperature", rotational, "J")
     if not t / _FAR <= r <= t * _FAR:
         text = f" = {r:g}, translational_temperature = {t:g}: must be at most a factor of {_FAR:g} apart"
         raise ParameterError(Problem("rotational_temperature", text))
-    return t, r / t
+    return t, r / t, positive("number_density", number_density, "m-3")

@@ -52,10 +52,8 @@ def surface(body: AnyBody, nodes: int) -> Surface:
     """Return the contact surface of two such bodies by Gauss's rules of so many nodes each."""
     match body:
         case Dumbbell() if body.separation == 0.0:
-            measures, axes = (
-                _ellipsoid(np.full(3, body.radii[0]), np.full(3, body.transverse_inertia), 1, 1),
-                0,
-            )
+            semi_axes, moments = np.full(3, body.radii[0]), np.full(3, body.transverse_inertia)
+            measures, axes = _ellipsoid(semi_axes, moments, 1, 1), 0
         case Dumbbell() if body.is_equal and body.separation <= 2.0 * body.radii[0]:
             return _dumbbells(body, nodes)
         case Spherocylinder():
