@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 import restitution as rs
 from restitution.laws import Law
-from restitution.laws._coulomb import Hypothesis
+from restitution.laws._laws import Hypothesis
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from restitution import bodies, laws
 from restitution.drop.release import Axis, Orientation
 from restitution.drop.run import Run
 from restitution.drop.toml import _KINDS
-from restitution.laws._coulomb import Hypothesis
+from restitution.laws._laws import Hypothesis
 
 ROOT = Path(__file__).parents[2]
 SOURCES = [

@@ -2,16 +2,13 @@
 
 from restitution import _core
 from restitution._internal.described import one_of
-from restitution.laws._chatterjee_ruina import ChatterjeeRuina
-from restitution.laws._coulomb import Coulomb
 from restitution.laws._custom import CustomLaw
-from restitution.laws._frictionless import Frictionless
-from restitution.laws._law import CollisionLaw as CollisionLaw
-from restitution.laws._law import Law as Law
-from restitution.laws._law import check_steady as check_steady
+from restitution.laws._laws import ChatterjeeRuina, Coulomb, Frictionless, TangentialRestitution
+from restitution.laws._laws import CollisionLaw as CollisionLaw
+from restitution.laws._laws import Law as Law
+from restitution.laws._laws import check_steady as check_steady
 from restitution.laws._materials import Material as Material
 from restitution.laws._materials import Plastic, Scattered, Tabulated, Viscoelastic
-from restitution.laws._tangential_restitution import TangentialRestitution
 
 __all__ = [
     "ChatterjeeRuina",

@@ -8,7 +8,7 @@ from pydantic import Field, StringConstraints, ValidationInfo, field_validator
 
 from restitution import _core
 from restitution._internal.parameters import Allowed, ParameterError, wrong
-from restitution.laws._law import CollisionLaw, Law, check_steady
+from restitution.laws._laws import CollisionLaw, Law, check_steady
 
 _FUNCTION = "a function of K and the velocity of the contact, which returns the impulse, or a law"
 _NAME = "a str, not empty"
