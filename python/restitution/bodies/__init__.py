@@ -2,16 +2,15 @@
 
 from restitution import _core
 from restitution._internal.described import one_of
+from restitution.bodies._axial import Dumbbell, LoadedSphere, Spherocylinder, Spheroid
+from restitution.bodies._axial import Wall as Wall
 from restitution.bodies._body import AnyBody as AnyBody
 from restitution.bodies._body import Body as Body
 from restitution.bodies._body import of_attributes as of_attributes
 from restitution.bodies._clump import Clump
-from restitution.bodies._dumbbell import Dumbbell
 from restitution.bodies._ellipsoid import Ellipsoid, Superellipsoid
 from restitution.bodies._ellipsoid import farthest as farthest
 from restitution.bodies._ellipsoid import outermost as outermost
-from restitution.bodies._given import Wall as Wall
-from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._mesh import Mesh
 from restitution.bodies._polyhedra import Box, ConvexPolyhedron, Die
 from restitution.bodies._revolution import Cylinder, Egg, Revolution, Ring, TruncatedCone
@@ -23,8 +22,6 @@ from restitution.bodies._roundness import GRADES as GRADES
 from restitution.bodies._roundness import ROUGHNESS as ROUGHNESS
 from restitution.bodies._roundness import Form as Form
 from restitution.bodies._roundness import ball_grade, ball_roughness, from_roundness
-from restitution.bodies._spherocylinder import Spherocylinder
-from restitution.bodies._spheroid import Spheroid
 
 __all__ = [
     "Box",

@@ -16,12 +16,10 @@ from restitution._internal.parameters import (
     wrong,
 )
 from restitution._internal.resources import available_memory
+from restitution.bodies._axial import Dumbbell, LoadedSphere, Spherocylinder
 from restitution.bodies._body import AnyBody
 from restitution.bodies._clump import Clump
-from restitution.bodies._dumbbell import Dumbbell
-from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._rigid import Density, Length, RigidBody, plain
-from restitution.bodies._spherocylinder import Spherocylinder
 
 _HEIGHTS = (
     "None, a finite number >= 0 in m, one for each of the asperities, or one of "

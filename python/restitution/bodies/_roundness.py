@@ -16,11 +16,8 @@ from restitution._internal.parameters import (
     shown,
     wrong,
 )
+from restitution.bodies._axial import Dumbbell, LoadedSphere, Spheroid, Wall
 from restitution.bodies._body import Body
-from restitution.bodies._dumbbell import Dumbbell
-from restitution.bodies._given import Wall
-from restitution.bodies._loaded_sphere import LoadedSphere
-from restitution.bodies._spheroid import Spheroid
 
 Form: TypeAlias = Literal["lobed", "flattened", "dumbbell", "off-centre"]
 
