@@ -195,15 +195,19 @@ class Run(Parameters):
         return self
 
     @model_validator(mode="after")
+    def _one_for_each_particle(self) -> "Run":
+        parts = "angles" if isinstance(self.body, Body) else "quaternions"
+        for name, given, what in (("orientation", self.orientations, parts), ("spin", self.spins, "vectors")):
+            if given is not None and len(given) != self.particles:
+                text = f" has {len(given)} {what}: must have one for each of particles = {self.particles}"
+                raise ParameterError(Problem(name, text))
+        return self
+
+    @model_validator(mode="after")
     def _nothing_below_the_plane(self) -> "Run":
-        given = self.orientations
-        if given is not None and len(given) != self.particles:
-            what = "angles" if isinstance(self.body, Body) else "quaternions"
-            text = f" has {len(given)} {what}: must have one for each of particles = {self.particles}"
-            raise ParameterError(Problem("orientation", text))
         solid: Any = self.body.compiled
         least = self.heights[0]
-        placed = given if self.angles is None else np.cos(self.angles)
+        placed = self.orientations if self.angles is None else np.cos(self.angles)
         lowest = solid.farthest()
         if placed is not None and not _core.clears(least, lowest):
             lowest = solid.lowest(placed)
@@ -236,12 +240,9 @@ class Run(Parameters):
     @model_validator(mode="after")
     def _within_the_digits(self) -> "Run":
         """Refuse heights, speeds and spins so large that a double has no digits left for the body."""
-        solid = self.body.compiled
         least = self.body.lowest_position
-        highest = self.heights[1]
-        if highest > _BEYOND * least:
-            of = f"{_BEYOND:g} times the least height of the centre of mass over the plane"
-            raise ParameterError(wrong("release_height", highest, self._beyond(_BEYOND * least, "m", of)))
+        of = f"{_BEYOND:g} times the least height of the centre of mass over the plane"
+        _check_within("release_height", self.heights[1], _BEYOND * least, "m", of)
         falling = self.gravity * math.cos(self.incline)
         if self.incline > math.pi / 2 - 1.0 / _BEYOND:
             allowed = (
@@ -250,30 +251,11 @@ class Run(Parameters):
             raise ParameterError(wrong("incline", self.incline, allowed))
         fastest = math.sqrt(_BEYOND) * math.sqrt(falling) * math.sqrt(least)
         of = f"{math.sqrt(_BEYOND):g} times √(g h), h being the least height of the centre of mass"
-        self._check_within("release_velocity", self.release_velocity, fastest, "m/s", of)
-        most = math.sqrt(_BEYOND) * math.sqrt(falling) / math.sqrt(solid.farthest())
+        _check_within("release_velocity", self.release_velocity, fastest, "m/s in magnitude", of)
+        most = math.sqrt(_BEYOND) * math.sqrt(falling) / math.sqrt(self.body.compiled.farthest())
         spins = self.spin.rates[1] if isinstance(self.spin, RandomSpin) else self.spin
         of = f"{math.sqrt(_BEYOND):g} times √(g/r), r being the radius of the body about its centre of mass"
-        self._check_within("spin", spins, most, "rad/s", of)
-        return self
-
-    def _check_within(self, name: str, values: Any, most: float, unit: str, of: str) -> None:
-        """Name the first number whose magnitude is too large, with its place in a vector or a table."""
-        numbers = np.asarray(values)
-        allowed = self._beyond(most, f"{unit} in magnitude", of)
-        check_each(name, numbers, np.abs(numbers) <= most, allowed)
-
-    @staticmethod
-    def _beyond(most: float, unit: str, of: str) -> str:
-        allowed = f"at most {most:.6g} {unit}, {of}"
-        return f"{allowed}; beyond, a double has no digits left for the body"
-
-    @model_validator(mode="after")
-    def _one_spin_per_particle(self) -> "Run":
-        spins = self.spins
-        if spins is not None and len(spins) != self.particles:
-            text = f" has {len(spins)} vectors: must have one for each of particles = {self.particles}"
-            raise ParameterError(Problem("spin", text))
+        _check_within("spin", spins, most, "rad/s in magnitude", of)
         return self
 
     @property
@@ -347,3 +329,10 @@ class Run(Parameters):
         names = type(self).model_fields
         parts = [written.get(name, {name: getattr(self, name)}) for name in names]
         return {key: value for part in parts for key, value in part.items()}
+
+
+def _check_within(name: str, values: Any, most: float, unit: str, of: str) -> None:
+    """Name the first number whose magnitude is too large, with its place in a vector or a table."""
+    numbers = np.asarray(values)
+    allowed = f"at most {most:.6g} {unit}, {of}; beyond, a double has no digits left for the body"
+    check_each(name, numbers, np.abs(numbers) <= most, allowed)
