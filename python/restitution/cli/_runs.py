@@ -56,19 +56,13 @@ def simulate(
     far are written, and the attribute "incomplete" of the file says so.
     """
     with errors_in_a_line("netCDF4"):
-        from restitution.drop.simulate import checked_record, simulate_run
+        from restitution.drop.simulate import simulate_run
         from restitution.drop.toml import read
 
         parameters = read(run)
-        how = {"until": until, "threads": threads, "progress": progress(quiet)}
-        written(
-            lambda: simulate_run(parameters, record=checked_record(record), **how),  # type: ignore[arg-type]
-            _summary,
-            run,
-            out,
-            overwrite=overwrite,
-            quiet=quiet,
-        )
+        how: dict[str, Any] = {"record": record, "until": until, "threads": threads}
+        work = partial(simulate_run, parameters, **how, progress=progress(quiet))
+        written(work, _summary, run, out, overwrite=overwrite, quiet=quiet)
 
 
 def statistics(

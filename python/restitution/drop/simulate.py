@@ -144,18 +144,6 @@ def simulate(
     return data
 
 
-def checked_record(record: object) -> Record:
-    """Refuse what is neither "impacts" nor "state"."""
-    return "state" if word("record", record, get_args(Record)) == "state" else "impacts"
-
-
-def checked_until(until: object) -> bool:
-    """Return whether particles end where they have settled."""
-    if until is None or (isinstance(until, str) and until in get_args(Until)):
-        return until is not None
-    raise ParameterError(wrong("until", until, f"{either(get_args(Until))}, or left out"))
-
-
 def simulate_run(
     run: Run,
     *,
@@ -170,9 +158,11 @@ def simulate_run(
     from restitution.drop.trajectory import with_positions
 
     number = checked_threads(threads)
-    state = checked_record(record) == "state"
+    state = word("record", record, get_args(Record)) == "state"
     columns = _core.columns(run.body.compiled, run.law.compiled, state)
-    settled = settling_height(run) if checked_until(until) else 0.0
+    if until is not None and not (isinstance(until, str) and until in get_args(Until)):
+        raise ParameterError(wrong("until", until, f"{either(get_args(Until))}, or left out"))
+    settled = settling_height(run) if until else 0.0
     room, rows = _core.bytes_per_impact(columns) + state * POSITION, run.particles * run.impacts
     check_size("particles * impacts", rows, rows, room, "impacts")
     with progress_bar("simulate", run.particles, "particles", show=progress) as tell:

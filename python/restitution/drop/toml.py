@@ -5,6 +5,7 @@ import tomllib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from inspect import signature
+from itertools import product
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -80,11 +81,8 @@ def read_all(path: Path, *, single: bool = False) -> Asked:
     """Read what is to be counted, compared or learned; `single` refuses more than one body or law."""
     reader = Reader(tables_in(path))
     bodies, laws = (reader.several(name, single=single) for name in _PARTS)
-    for body in bodies.values():
-        for law in laws.values():
-            reader.problems += [
-                problem for problem in reader.problems_of_run(body, law) if problem not in reader.problems
-            ]
+    for body, law in product(bodies.values(), laws.values()):
+        reader.run({"body": body, "law": law})
     run = dict(reader.table("run"))
     run |= reader.random(run)
     tables = {}
@@ -165,9 +163,9 @@ class Reader:
         self.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)
 
     def finish(self, source: str) -> None:
-        """Raise what is wrong, if anything is."""
+        """Raise what is wrong, if anything is, each thing once."""
         if self.problems:
-            raise ValueError("\n".join(f"{source}: {problem}" for problem in self.problems))
+            raise ValueError("\n".join(f"{source}: {problem}" for problem in dict.fromkeys(self.problems)))
 
     def run(self, parts: dict[str, Parameters | None]) -> Run | None:
         """Make the run of a body and a law."""
@@ -182,13 +180,6 @@ class Reader:
             for name, kind in kinds.items()
             if isinstance(table.get(name), dict)
         }
-
-    def problems_of_run(self, body: Parameters | None, law: Parameters | None) -> list[Problem]:
-        """Report what is wrong with the run of a body and a law."""
-        before, self.problems = self.problems, []
-        self.run({"body": body, "law": law})
-        found, self.problems = self.problems, before
-        return found
 
     def several(self, name: str, *, single: bool) -> dict[str, Parameters | None]:
         """Make the bodies or the laws of all tables of a name, by their own names."""
