@@ -20,29 +20,19 @@ from restitution._internal.parameters import ParameterError, wrong
 MOST = 2**28  # bytes of a file that is read as a whole: far above tables of times and parameters of runs
 _LONGEST = 50  # letters of a name that a draft's contains: most file systems allow 255 bytes in all
 
-# What the package writes under names that are given, in the words of an error.
-NETCDF = "a netCDF file, such as run.nc"
-ZARR = "a Zarr store, such as study.zarr"
-HEADER = "a header of C and C++, such as dist.h"
-MODULE = "a Fortran source, such as dist.f90"
-IMAGE = "a figure, which is written as .png, .pdf or .svg"
-FILM = "a film, which is written as .gif or .mp4"
-TABLE = "a table, which is written as .csv or .parquet"
-LATEX = "a LaTeX source, such as fit.tex"
-FOLDER = "a folder"
-
 _OWN = {
-    NETCDF: ".nc .nc3 .nc4 .netcdf .cdf .h5 .hdf5",
-    ZARR: ".zarr",
-    HEADER: ".h .hh .hpp .hxx",
-    MODULE: ".f90 .f95 .f03 .f08",
-    IMAGE: ".png .pdf .svg",
-    FILM: ".gif .mp4",
-    TABLE: ".csv .parquet",
-    LATEX: ".tex",
-    FOLDER: "",
+    "a netCDF file, such as run.nc": ".nc .nc3 .nc4 .netcdf .cdf .h5 .hdf5",
+    "a Zarr store, such as study.zarr": ".zarr",
+    "a header of C and C++, such as dist.h": ".h .hh .hpp .hxx",
+    "a Fortran source, such as dist.f90": ".f90 .f95 .f03 .f08",
+    "a figure, which is written as .png, .pdf or .svg": ".png .pdf .svg",
+    "a film, which is written as .gif or .mp4": ".gif .mp4",
+    "a table, which is written as .csv or .parquet": ".csv .parquet",
+    "a LaTeX source, such as fit.tex": ".tex",
+    "a folder": "",
 }
-"""How such names end."""
+"""What the package writes under names that are given, in the words of an error, and how such names end."""
+NETCDF, ZARR, HEADER, MODULE, IMAGE, FILM, TABLE, LATEX, FOLDER = _OWN
 _OTHERS = (
     ".c .cc .cpp .f .for .py .rs .jl .m .r .ipynb .tsv .txt .md .html .htm .json .toml .yaml .yml "
     ".xml .xls .xlsx .ods .npy .npz .mat .pkl .pickle .jpg .jpeg .tif .tiff .bmp .eps .ps "
@@ -212,8 +202,6 @@ def _place(draft: Path, target: Path, *, replace: bool) -> None:
         except OSError:  # a file system without links: the name first, then what is in it
             target.touch(exist_ok=False)
             os.replace(draft, target)
-        else:
-            draft.unlink()
     except FileExistsError:
         raise FileExistsError(errno.EEXIST, "exists already", str(target)) from None
 
