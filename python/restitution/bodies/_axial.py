@@ -25,27 +25,20 @@ def _positive(value: Any) -> float | None:
 def _one_or_two(allowed: str, *, or_none: bool = False) -> BeforeValidator:
     """Take a positive number, or two."""
 
-    def checked(value: Any, about: ValidationInfo) -> float | tuple[float, float] | None:
+    def checked(value: Any, about: ValidationInfo) -> Any:
         if value is None and or_none:
             return None
         name = str(about.field_name)
         if isinstance(value, np.ndarray) and value.shape == (2,):
             value = value.tolist()
-        if not (isinstance(value, list | tuple) and len(value) == 2):
-            number = _positive(value)
-            if number is None:
-                raise ParameterError(wrong(name, value, allowed))
-            return number
-        numbers = [_positive(part) for part in value]
-        problems = [
-            wrong(f"{name}[{index}]", part, _POSITIVE)
-            for index, (part, number) in enumerate(zip(value, numbers, strict=True))
-            if number is None
-        ]
-        if problems:
-            raise ParameterError(*problems)
-        one, two = (number for number in numbers if number is not None)
-        return one, two
+        given = [(name, value, allowed)]
+        if two := isinstance(value, list | tuple) and len(value) == 2:
+            given = [(f"{name}[{index}]", part, _POSITIVE) for index, part in enumerate(value)]
+        numbers = [_positive(part) for _, part, _ in given]
+        if None in numbers:
+            problems = zip(given, numbers, strict=True)
+            raise ParameterError(*(wrong(*one) for one, number in problems if number is None))
+        return tuple(numbers) if two else numbers[0]
 
     return BeforeValidator(checked)
 

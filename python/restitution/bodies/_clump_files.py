@@ -34,6 +34,11 @@ class _File(NamedTuple):
     def lacks(self, what: str) -> ParameterError:
         return ParameterError(Problem(self.name, f": {what}"))
 
+    def words(self, line: _Line, counts: tuple[int, ...], allowed: str) -> tuple[str, ...]:
+        if len(line.words) not in counts:
+            raise self.wrong(line, allowed)
+        return line.words
+
     def numbers(self, line: _Line, words: tuple[str, ...], allowed: str) -> tuple[float, ...]:
         try:
             found = tuple(map(float, words))
@@ -55,10 +60,7 @@ def rows_in(path: Path, columns: tuple[str, ...]) -> Spheres:
     row = " ".join(columns)
     file = _file(path, f"rows {row}")
     allowed = f"{row}, with spaces or commas between them"
-    for line in file.lines:
-        if len(line.words) != len(columns):
-            raise file.wrong(line, allowed)
-    return [file.numbers(line, line.words, allowed) for line in file.lines]
+    return [file.numbers(line, file.words(line, (len(columns),), allowed), allowed) for line in file.lines]
 
 
 def read(path: Path, format: Any) -> Spheres:
@@ -110,12 +112,7 @@ def _guess(file: _File) -> Format:
 
 def _rows(file: _File) -> Spheres:
     """One sphere a line: LIGGGHTS, which ignores what stands behind the four numbers, CLUMP, MercuryDPM."""
-    spheres = []
-    for line in file.lines:
-        if len(line.words) not in (4, 5):
-            raise file.wrong(line, _ROW)
-        spheres.append(file.sphere(line, line.words[:4], _ROW))
-    return spheres
+    return [file.sphere(line, file.words(line, (4, 5), _ROW)[:4], _ROW) for line in file.lines]
 
 
 def _liggghts(file: _File) -> Spheres:
@@ -139,12 +136,11 @@ def _csv(file: _File) -> Spheres:
     if any(names.count(column) != 1 for column in _COLUMNS):
         raise file.wrong(head, "a header with the columns x, y, z and r, each once")
     places = [names.index(column) for column in _COLUMNS]
+    allowed = f"{len(names)} values, as many as the header has names; x, y, z finite, r > 0"
     spheres = []
     for line in rows:
-        allowed = f"{len(names)} values, as many as the header has names; x, y, z finite, r > 0"
-        if len(line.words) != len(names):
-            raise file.wrong(line, allowed)
-        spheres.append(file.sphere(line, tuple(line.words[place] for place in places), allowed))
+        words = file.words(line, (len(names),), allowed)
+        spheres.append(file.sphere(line, tuple(words[place] for place in places), allowed))
     return spheres
 
 

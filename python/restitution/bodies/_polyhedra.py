@@ -33,7 +33,6 @@ class ConvexPolyhedron(FromRows):
     _columns: ClassVar[tuple[str, ...]] = ("x", "y", "z")
 
     points: Annotated[Any, Allowed(_POINTS), rows(_POINTS, 3, 4), Field(description="m")]
-    density: Density = 2500.0
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
 

@@ -45,7 +45,6 @@ class Revolution(FromRows, Turned):
         rows(_PROFILE, 2, 2, lambda points: (points >= 0.0) | [True, False]),
         Field(description="m"),
     ]
-    density: Density = 2500.0
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
 
