@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from restitution import _core
 from restitution._internal.arrays import FloatArray, reals
 from restitution._internal.process import uninterrupted
 from restitution.bodies import RigidBody
-from restitution.drop.dataset import inertia_of
+from restitution.drop.dataset import inertia_of, labelled
 from restitution.drop.recorded import RECORDS, attribute, check_frame, variables
 from restitution.drop.resting import in_body
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from restitution.drop.run import Run
+from restitution.drop.run import Run
 
 KINDS = ("vertical", "sideways", "rotational")
 """The kinds of motion: of the centre of mass along the plane normal and along the plane, and about it."""
@@ -61,25 +58,18 @@ def energy_budget(data: xr.Dataset) -> xr.Dataset:
     >>> bool(vertical > 0 > rotational > sideways)
     True
     """
-    import xarray as xr
-
     vectors = dict.fromkeys(_STATES, (*RECORDS, "component"))
     own = {"attitude": (*RECORDS, "quaternion")} if "attitude" in getattr(data, "variables", ()) else {}
     own = own or {"axis": (*RECORDS, "component")}
     states = variables("data", data, 'restitution.simulate(..., record="state")', vectors | own)
     check_frame("data", data)
     mass = attribute("data", data, "mass", "a finite number > 0", lambda m: 0.0 < m < np.inf)
-    before, after = _energies(mass, data.attrs, states)
-    text = "kinetic energy {} the impact"
-    dims = (*RECORDS, "energy")
-    return xr.Dataset(
-        {
-            "before": (dims, before, {"long_name": text.format("before"), "units": "J"}),
-            "after": (dims, after, {"long_name": text.format("after"), "units": "J"}),
-        },
-        {**{name: data[name] for name in RECORDS if name in data.coords}, "energy": list(KINDS)},
-        data.attrs,
-    )
+    about = {
+        when: ((*RECORDS, "energy"), energies, f"kinetic energy {when} the impact", "J")
+        for when, energies in zip(("before", "after"), _energies(mass, data.attrs, states), strict=True)
+    }
+    coordinates: dict[str, Any] = {name: data[name] for name in RECORDS if name in data.coords}
+    return xr.Dataset(labelled(about), coordinates | {"energy": list(KINDS)}, data.attrs)
 
 
 def _energies(
@@ -140,18 +130,18 @@ def budget_by_row(
         found = _means(total)
         left_out = [_means(total - part) for part in parts] if size > 1 else []
     about: dict[str, Any] = {
-        "energy": ("energy", list(KINDS), {"long_name": "kind of motion"}),
-        "above_one": (row, total[:, 1, 3].astype(np.int64), {"long_name": "impacts with restitution > 1"}),
+        "energy": ("energy", list(KINDS), "kind of motion", None),
+        "above_one": (row, total[:, 1, 3].astype(np.int64), "impacts with restitution > 1", None),
     }
     for name, values in found.items():
         dims, (text, unit) = (row, "energy")[: values.ndim], _MEANS[name]
-        about[name] = (dims, values, {"long_name": text, "units": unit})
+        about[name] = (dims, values, text, unit)
         if left_out:
             # The jackknife, as in `batches`.
             error = np.sqrt((size - 1.0) * np.var([one[name] for one in left_out], axis=0))
             text = f"standard error of {name} over {size} batches of particles"
-            about[f"{name}_error"] = (dims, error, {"long_name": text, "units": unit})
-    return about
+            about[f"{name}_error"] = (dims, error, text, unit)
+    return labelled(about)
 
 
 def _means(sums: FloatArray) -> dict[str, FloatArray]:

@@ -5,8 +5,9 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.arrays import FloatArray
+from restitution.drop.dataset import labelled
 from restitution.drop.energy import share, tell
-from restitution.drop.recorded import check_filled, check_successive, pull, records
+from restitution.drop.recorded import RECORDS, check_filled, check_successive, pull, records
 
 _INSTANT, _FAST = 1e-9, 0.01
 """Of the time v/g, within which two impacts are at one instant; of the speed of the first impact, above which
@@ -111,13 +112,9 @@ def clusters(data: xr.Dataset) -> xr.Dataset:
     with np.errstate(divide="ignore", invalid="ignore"):
         whole = np.where(impacts > 0, np.take_along_axis(rise, last, axis=1) / fall, np.nan)
     about = {
-        "cluster": (first, "number of the first impact at the instant of this one", None),
-        "impacts": (impacts, "impacts at this instant, at the first of them", None),
-        "restitution": (whole, "coefficient of restitution of all impacts at this instant", "1"),
+        "cluster": (RECORDS, first, "number of the first impact at the instant of this one", None),
+        "impacts": (RECORDS, impacts, "impacts at this instant, at the first of them", None),
+        "restitution": (RECORDS, whole, "coefficient of restitution of all impacts at this instant", "1"),
     }
-    found = {
-        name: (("particle", "impact"), values, {"long_name": text} | ({"units": unit} if unit else {}))
-        for name, (values, text, unit) in about.items()
-    }
-    coordinates = {name: data[name] for name in ("particle", "impact") if name in data.coords}
-    return xr.Dataset(found, coordinates, data.attrs)
+    coordinates = {name: data[name] for name in RECORDS if name in data.coords}
+    return xr.Dataset(labelled(about), coordinates, data.attrs)

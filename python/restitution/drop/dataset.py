@@ -1,5 +1,6 @@
 """A run as an xarray Dataset, with the names, units and flags of the core; files."""
 
+from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import version
 from typing import Any
@@ -57,6 +58,14 @@ def inertia_of(body: AnyBody) -> dict[str, Any]:
         names: tuple[str, ...] = ("mass", "principal_moments", "principal_axes")
         return {name: getattr(body.compiled, name) for name in names}
     return {name: getattr(body, name) for name in ("mass", "transverse_inertia", "axial_inertia")}
+
+
+def labelled(about: Mapping[str, tuple[Any, Any, str, str | None]]) -> dict[str, Any]:
+    """Return variables by name: each has dimensions, values, what it is, and its unit if it has one."""
+    return {
+        name: (dims, values, {"long_name": text} | ({"units": unit} if unit else {}))
+        for name, (dims, values, text, unit) in about.items()
+    }
 
 
 PAPER = {"references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)"}

@@ -29,6 +29,7 @@ from restitution.drop.bins import (
     centres,
     increasing_edges,
 )
+from restitution.drop.dataset import labelled
 from restitution.drop.energy import LEDGER, by_row, ledger_of
 from restitution.drop.recorded import records
 
@@ -198,20 +199,14 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: in
         errors = np.sqrt(correction * squares) / number
         deviation_error = np.where(variance > 0, errors[1] / (2 * np.sqrt(variance)), np.nan)
     text = "cluster-robust standard error of the {} of restitution; a particle is a cluster"
-    return xr.Dataset(
-        {
-            "mean_standard_error": ("velocity", errors[0], {"long_name": text.format("mean")}),
-            "variance_standard_error": ("velocity", errors[1], {"long_name": text.format("variance")}),
-            "deviation_standard_error": (
-                "velocity",
-                deviation_error,
-                {"long_name": text.format("standard deviation")},
-            ),
-            "particles": ("velocity", particles, {"long_name": "particles with an impact in the bin"}),
-        },
-        coords={"velocity": ("velocity", centres(edges), {"units": "m s-1", "long_name": "impact velocity"})},
-        attrs=_without_ledger(data),
-    )
+    about = {
+        "mean_standard_error": ("velocity", errors[0], text.format("mean"), None),
+        "variance_standard_error": ("velocity", errors[1], text.format("variance"), None),
+        "deviation_standard_error": ("velocity", deviation_error, text.format("standard deviation"), None),
+        "particles": ("velocity", particles, "particles with an impact in the bin", None),
+    }
+    rows = {"velocity": ("velocity", centres(edges), {"units": "m s-1", "long_name": "impact velocity"})}
+    return xr.Dataset(labelled(about), rows, _without_ledger(data))
 
 
 def _without_ledger(data: xr.Dataset) -> dict[Hashable, Any]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from restitution._internal.arrays import FloatArray, IntArray, real
 from restitution._internal.parameters import ParameterError, Problem, wrong
@@ -23,15 +25,10 @@ from restitution.bodies import (
     Turned,
     directions,
 )
+from restitution.drop.dataset import labelled
 from restitution.drop.recorded import RECORDS, check_filled, check_frame, check_successive, pull, variables
+from restitution.drop.run import Run
 from restitution.laws import Law
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import xarray as xr
-
-    from restitution.drop.run import Run
 
 _BODIES = "a rigid body that is not rough: a Box, Clump, Die, Egg, Ellipsoid, Mesh and so on"
 _STATE = ("velocity_after", "angular_velocity_after", "position")
@@ -340,8 +337,6 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
     >>> found.height.round(4).values.tolist()
     [0.015, 0.015, 0.01, 0.01, 0.005, 0.005]
     """
-    import xarray as xr
-
     shape = _shape(body)
     needed: dict[str, tuple[str, ...]] = dict.fromkeys(_STATE, (*RECORDS, "component"))
     needed |= {"energy_ratio": RECORDS, "attitude": (*RECORDS, "quaternion")}
@@ -397,13 +392,9 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
         "resting": ("particle", rests, "number of the face, -1: undecided", "1"),
         "decided_after": ("particle", after, "number of impacts after which it was decided", "1"),
     }
-    found = {
-        name: (dims, values, {"long_name": text, "units": unit})
-        for name, (dims, values, text, unit) in about.items()
-    }
     coordinates = {name: data[name] for name in ("particle", "component") if name in data.coords}
     attributes = data.attrs | {"undecided": undecided, "resolution": getattr(shape, "miss", 0.0)}
-    return xr.Dataset(found, coordinates, attributes)
+    return xr.Dataset(labelled(about), coordinates, attributes)
 
 
 def in_body(attitude: FloatArray, vector: FloatArray) -> FloatArray:

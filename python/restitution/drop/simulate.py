@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, TypeAlias, Unpack, get_args
+from typing import Literal, TypeAlias, Unpack, get_args
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
 
 from restitution import _core
 from restitution._internal.arrays import either, word
@@ -10,14 +14,12 @@ from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.process import uninterrupted
 from restitution._internal.resources import check_size, checked_threads, progress_bar
 from restitution.bodies import AnyBody
+from restitution.drop import clusters, energy
+from restitution.drop.dataset import dataset
+from restitution.drop.resting import settling_height
 from restitution.drop.run import Run, RunArguments, takes_run
+from restitution.drop.trajectory import with_positions
 from restitution.laws import CollisionLaw
-
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-    import xarray as xr
-
 
 Record: TypeAlias = Literal["impacts", "state"]
 Until: TypeAlias = Literal["settled"]
@@ -133,12 +135,9 @@ def simulate(
     >>> bool((data.restitution.isel(impact=0) <= 0.98).all())
     True
     """
-    from restitution.drop import clusters
-    from restitution.drop.energy import warn
-
     checked = Run.called("simulate", body, law, run)
     data = simulate_run(checked, threads=threads, progress=progress, record=record, until=until)
-    warn(data)
+    energy.warn(data)
     if checked.orientations is not None:  # no random attitude lands flat
         clusters.warn(data)
     return data
@@ -153,10 +152,6 @@ def simulate_run(
     until: Until | None = None,
 ) -> xr.Dataset:
     """`simulate` for parameters that are already checked."""
-    from restitution.drop.dataset import dataset
-    from restitution.drop.resting import settling_height
-    from restitution.drop.trajectory import with_positions
-
     number = checked_threads(threads)
     state = word("record", record, get_args(Record)) == "state"
     columns = _core.columns(run.body.compiled, run.law.compiled, state)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
 from restitution import _core
 from restitution._internal.arrays import FloatArray, check_each, reals, whole
 from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution.drop.dataset import labelled
 from restitution.drop.recorded import (
     RECORDS,
     attribute,
@@ -20,9 +22,6 @@ from restitution.drop.recorded import (
     released_from,
     variables,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _STATES = ("position", "velocity_after", "angular_velocity_after")
 _NEEDED = {"time": RECORDS, **dict.fromkeys(_STATES, (*RECORDS, "component"))}
@@ -95,8 +94,6 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     >>> path.position.shape, path.impacts.values.tolist()
     ((3, 3), [0, 0, 1])
     """
-    import xarray as xr
-
     _check(data)
     turns = _top(data) if "attitude" in data else _symmetric(data)
     pulled = np.array(_gravity(*pull("data", data)))
@@ -122,20 +119,16 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     if not all(np.isfinite(values).all() for values in found.values()):
         text = ": the motion at these times is not finite; must be the states and settings of a run"
         raise ParameterError(Problem("data", text))
-    variables: dict[str, Any] = {
-        name: (
-            ("time", "quaternion" if name == "attitude" else "component"),
-            values,
-            {"long_name": _ABOUT[name][0], "units": _ABOUT[name][1]},
-        )
+    about: dict[str, Any] = {
+        name: (("time", "quaternion" if name == "attitude" else "component"), values, *_ABOUT[name])
         for name, values in found.items()
     }
-    variables["impacts"] = ("time", flight, {"long_name": "number of impacts up to then"})
+    about["impacts"] = ("time", flight, "number of impacts up to then", None)
     coordinates = {
         "time": ("time", when, {"long_name": "time since release", "units": "s"}),
         **{name: data[name] for name in ("component", "quaternion") if name in data.coords},
     }
-    return xr.Dataset(variables, coordinates, data.attrs | {"particle": int(particle)})
+    return xr.Dataset(labelled(about), coordinates, data.attrs | {"particle": int(particle)})
 
 
 def _particle(data: xr.Dataset, particle: int) -> xr.Dataset:

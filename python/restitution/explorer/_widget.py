@@ -1,16 +1,15 @@
 """The page inside a notebook: Jupyter, marimo, VS Code, through anywidget."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
+from restitution import bodies, laws
 from restitution._internal.arrays import whole
 from restitution._internal.parameters import ParameterError, renamed, wrong
 from restitution.drop.run import Run
 from restitution.explorer._page import NUMBERS, link, page
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # In a frame of its own, the page's style and keys do not meet the notebook's. A Blob's address can carry #.
 _ESM = """
@@ -77,12 +76,8 @@ def explore(data: "xr.Dataset", *, height: int = 900) -> Any:
     return Explorer(page=page(), fragment=fragment, height=height)
 
 
-def _run_of(data: "xr.Dataset") -> Run:
+def _run_of(data: xr.Dataset) -> Run:
     """Make the run again from the attributes of its Dataset."""
-    import xarray as xr
-
-    from restitution import bodies, laws
-
     if not isinstance(data, xr.Dataset):
         raise ParameterError(wrong("data", data, "a Dataset from restitution.simulate"))
     attributes = dict(data.attrs)
