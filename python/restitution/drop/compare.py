@@ -151,40 +151,34 @@ def _finished(
     return found.assign_attrs(incomplete=incomplete)
 
 
-def _word(kind: type[Any]) -> str:
-    """Return what a user calls a kind of objects."""
-    return kind.__name__.removeprefix("Any")
-
-
 def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> dict[str, T]:
     """Name every body or law."""
-    allowed = f"a dict or list of {_word(kind)}"
-    if isinstance(given, Mapping):
-        named = dict(given)
-    elif isinstance(given, Iterable) and not isinstance(given, Parameters | str):
-        values = several(what, given, allowed, lambda _, value: _checked(what, value, kind))
-        names = [_name(value, values) for value in values]
-        named = dict(zip(names, values, strict=True))
-        if len(named) < len(values):
-            twice = next(name for name in names if names.count(name) > 1)
-            text = f": {twice} appears twice; all must differ, or have names in a dict"
-            raise ParameterError(Problem(what, text))
-    else:
+    called = kind.__name__.removeprefix("Any")
+
+    def checked(_: int, value: T) -> T:
+        if not isinstance(value, kind):
+            raise ParameterError(Problem(what, f" holds {shown(value)}: must be objects of a {called}"))
+        return value
+
+    allowed = f"a dict or list of {called}"
+    if isinstance(given, Parameters | str) or not isinstance(given, Iterable):
         raise ParameterError(wrong(what, given, allowed))
-    if not named:
+    if isinstance(given, Mapping):
+        names, values = list(given), several(what, given.values(), allowed, checked)
+    else:
+        values = several(what, given, allowed, checked)
+        names = [_name(value, values) for value in values]
+    if not values:
         raise ParameterError(Problem(what, ": must not be empty"))
-    for name, value in named.items():
+    for name in names:
         if not isinstance(name, str):
             raise ParameterError(Problem(what, f": {shown(name)} is not a name; must be a str"))
-        _checked(what, value, kind)
-    return named
-
-
-def _checked(what: str, value: Any, kind: type[Any]) -> Any:
-    if not isinstance(value, kind):
-        text = f" holds {shown(value)}: must be objects of a {_word(kind)}"
+    named = dict(zip(names, values, strict=True))
+    if len(named) < len(values):
+        twice = next(name for name in names if names.count(name) > 1)
+        text = f": {twice} appears twice; all must differ, or have names in a dict"
         raise ParameterError(Problem(what, text))
-    return value
+    return named
 
 
 def _name(one: Parameters, others: list[T]) -> str:
