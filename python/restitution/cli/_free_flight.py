@@ -1,7 +1,6 @@
 """The commands without gravity: `pair` and `gas`."""
 
 from collections.abc import Callable, Iterator
-from importlib import import_module
 from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -37,7 +36,6 @@ _BESIDES = ("body", "other", "law", "state", "states", "record", "threads", "pro
 
 def _written(
     name: str,
-    call: str,
     summary: Callable[["xr.Dataset"], Iterator[str]],
     run: Path,
     out: Path,
@@ -47,15 +45,15 @@ def _written(
     quiet: bool,
     **options: Any,
 ) -> None:
-    """Call a function of a folder with the bodies and the law of a file, and the arguments in its table."""
+    """Call the function of a command with the bodies and the law of a file and the arguments in its table."""
     with errors_in_a_line("netCDF4"):
+        import restitution as rs
         from restitution._internal.parameters import ParameterError
         from restitution.drop.toml import Reader, tables_in
         from restitution.pair import Plane
 
-        function = getattr(import_module(f"restitution.{name}"), call)
-        parameters = list(signature(function).parameters)
-        meets = "other" in parameters
+        meets = name == "pair"
+        function: Callable[..., Any] = rs.pair.encounters if meets else rs.gas.cool
         reader = Reader(tables_in(run), ("body", *(["other"] if meets else []), "law", name))
         bodies = list(reader.several("body", single=meets).values()) or [None]
         several = isinstance(reader.tables.get("body"), list) and not meets
@@ -66,7 +64,7 @@ def _written(
             parts.append(Plane() if plane else reader.chosen("other", other) if other else bodies[0])
         parts.append(reader.chosen("law", reader.table("law")))
         table = reader.table(name)
-        keys = [key for key in parameters if key not in _BESIDES]
+        keys = [key for key in signature(function).parameters if key not in _BESIDES]
         reader.only(name, table, keys)
         reader.finish(str(run))
         how = {"threads": threads, "progress": progress(quiet), **options}
@@ -98,7 +96,7 @@ def pair(
     holds what that returns.
     """
     how: dict[str, Any] = {"threads": threads, "overwrite": overwrite, "quiet": quiet, "record": record}
-    _written("pair", "encounters", _pairs, run, out, **how)
+    _written("pair", _pairs, run, out, **how)
 
 
 def gas(
@@ -118,7 +116,7 @@ def gas(
     number_density, heating, seed and others. The file holds what that returns.
     """
     how: dict[str, Any] = {"threads": threads, "overwrite": overwrite, "quiet": quiet, "record": record}
-    _written("gas", "cool", _gas, run, out, checkpoint=checkpoint, **how)
+    _written("gas", _gas, run, out, checkpoint=checkpoint, **how)
 
 
 def _pairs(data: "xr.Dataset") -> Iterator[str]:

@@ -104,10 +104,8 @@ def laws(
     energy, and the impacts that create energy.
     """
     with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
-        from restitution._internal.resources import checked_threads
         from restitution.figures.laws import write
 
-        checked_threads(threads)
         how = {"seed": seed, "threads": threads, "progress": progress(quiet)}
         png, _ = write(out, impacts=impacts, overwrite=overwrite, **how)  # type: ignore[arg-type]
         if not quiet:

@@ -3,7 +3,7 @@
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from typing import Any
 
 import typer
@@ -27,15 +27,13 @@ def ending() -> Iterator[list[int]]:
         yield came
 
 
-@contextmanager
-def leaving() -> Iterator[None]:
+def leaving() -> AbstractContextManager[None]:
     """Leave at once at a signal that ends a process: before a command begins, and after it has ended."""
 
     def leave(number: int) -> None:
         raise SystemExit(128 + number)
 
-    with handled(leave):
-        yield
+    return handled(leave)
 
 
 @contextmanager

@@ -87,7 +87,7 @@ def statistics(
     table \[statistics] of RUN.toml, or of the options. Ctrl-C ends the run early;
     what was counted until then is written.
     """
-    _count(run, out, _given(locals()), threads, single=True, overwrite=overwrite, quiet=quiet, table=table)
+    _count(run, out, locals(), threads, single=True, overwrite=overwrite, quiet=quiet, table=table)
 
 
 def compare(
@@ -108,7 +108,7 @@ def compare(
     The file holds what restitution.compare returns. Ctrl-C ends the work early;
     combinations that were finished are written.
     """
-    _count(run, out, _given(locals()), threads, single=False, overwrite=overwrite, quiet=quiet)
+    _count(run, out, locals(), threads, single=False, overwrite=overwrite, quiet=quiet)
 
 
 def distribution(
@@ -158,7 +158,6 @@ def distribution(
             path_for,
             whole_file,
         )
-        from restitution._internal.resources import checked_threads
         from restitution.distribution import FluctuatingRestitution, image, image_format, sealed
         from restitution.distribution.sources import header as c_header
         from restitution.distribution.sources import module as fortran_module
@@ -166,7 +165,6 @@ def distribution(
         from restitution.drop.toml import read_all
 
         study = read_all(run, single=True)
-        checked_threads(threads)
         if figure is not None:
             image_format(figure)
         paths = [path for path in (out, header, fortran, figure) if path is not None]
@@ -177,7 +175,9 @@ def distribution(
                 path_for(option, path, kind)
         for path in paths:
             check(path, replace=overwrite)
-        how = study.run | study.distribution | _given({"velocities": velocities, "given": given})
+        options = {"velocities": velocities, "given": given}
+        used = {name: value for name, value in options.items() if value is not None}
+        how = study.run | study.distribution | used
         (body,), (law,) = study.bodies.values(), study.laws.values()
         with warnings.catch_warnings(record=True) as doubts:
             warnings.simplefilter("always")
@@ -200,25 +200,10 @@ def distribution(
         raise typer.Exit(WARNED)
 
 
-_OPTIONS = (
-    "velocity_bins",
-    "velocity_range",
-    "restitution_bins",
-    "restitution_range",
-    "velocities",
-    "given",
-)
-
-
-def _given(options: dict[str, Any]) -> dict[str, Any]:
-    """Return the options that were used."""
-    return {name: options[name] for name in _OPTIONS if options.get(name) is not None}
-
-
 def _count(
     run: Path,
     out: Path,
-    given: dict[str, Any],
+    options: dict[str, Any],
     threads: int | None,
     *,
     single: bool,
@@ -229,16 +214,16 @@ def _count(
     """Count impacts of one body under one law, or of several; options go before the table [statistics]."""
     with errors_in_a_line("netCDF4"):
         import restitution as rs
-        from restitution.drop.toml import read_all
+        from restitution.drop.toml import COUNTING, read_all
 
         study = read_all(run, single=single)
-        bins = study.statistics | given
+        bins = study.statistics | {name: options[name] for name in COUNTING if options.get(name) is not None}
         missing = [name for name in ("velocity_bins", "restitution_bins") if name not in bins]
         if missing:
-            options = ", ".join(f"--{name.replace('_', '-')}" for name in missing)
+            words = ", ".join(f"--{name.replace('_', '-')}" for name in missing)
             raise ValueError(
                 f"{run}: {' and '.join(missing)}: missing; must be in a table [statistics], "
-                f"as restitution template prints it, or given as {options} with a range"
+                f"as restitution template prints it, or given as {words} with a range"
             )
         how = study.run | bins | {"threads": threads, "progress": progress(quiet)}
         if single:

@@ -33,7 +33,7 @@ _KINDS: dict[str, tuple[str, dict[str, type[Parameters]]]] = {
 }
 _PARTS = ("body", "law")
 _TABLES = (*_PARTS, "run", "statistics", "distribution")
-_COUNTING = (
+COUNTING = (
     "velocity_bins",
     "velocity_range",
     "restitution_bins",
@@ -86,7 +86,7 @@ def read_all(path: Path, *, single: bool = False) -> Asked:
     run = dict(reader.table("run"))
     run |= reader.random(run)
     tables = {}
-    for name, keys in (("statistics", _COUNTING), ("distribution", _LEARNING)):
+    for name, keys in (("statistics", COUNTING), ("distribution", _LEARNING)):
         tables[name] = reader.table(name)
         reader.only(name, tables[name], keys)
     reader.finish(str(path))
