@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from restitution._internal.arrays import whole, word
+from restitution._internal.arrays import FloatArray, whole, word
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.study._tables import number, table
 
@@ -195,7 +194,7 @@ def _numbers(key: str, value: Any, given: tuple[Any, ...]) -> tuple[int | float,
         raise ParameterError(wrong(f"sweep.{key}", value, _VALUES)) from None
 
 
-def _between(key: str, value: Any, unit: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _between(key: str, value: Any, unit: FloatArray) -> FloatArray:
     """Map [0, 1] to the range of a parameter, its ends to its ends exactly."""
     if not isinstance(value, Mapping):
         allowed = "a table { from, to } in a design that is not a grid"
@@ -221,7 +220,7 @@ def _between(key: str, value: Any, unit: npt.NDArray[np.float64]) -> npt.NDArray
     return found
 
 
-def _spread(kind: str, number: int, dimensions: int, seed: int) -> npt.NDArray[np.float64]:
+def _spread(kind: str, number: int, dimensions: int, seed: int) -> FloatArray:
     from scipy.stats import qmc
 
     sampler = qmc.Sobol if kind == "sobol" else qmc.LatinHypercube

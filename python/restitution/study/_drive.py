@@ -137,7 +137,8 @@ class Driver:
                         shown = time.monotonic()
                         pause = shown - start
             except BaseException:
-                self.engine.stop()
+                if self.engine.event is not None:
+                    self.engine.event.set()
                 raise
             finally:
                 if writes:

@@ -102,14 +102,12 @@ def readable(path: Path) -> Iterator[None]:
         yield
     except (Refused, ParameterError, MemoryError):
         raise
-    except OSError as error:
-        if error.errno is None:  # of Zarr, and not of the system
+    except Exception as error:
+        if not isinstance(error, OSError) or error.errno is None:  # of Zarr, and not of the system
             raise Refused(f"{path}: is damaged ({type(error).__name__}: {error})") from error
         if error.filename is None or str(error.filename).endswith(".partial"):  # a draft of Zarr
             raise OSError(error.errno, error.strerror, str(path)) from error
         raise
-    except Exception as error:
-        raise Refused(f"{path}: is damaged ({type(error).__name__}: {error})") from error
 
 
 def _wanted(study: Study) -> dict[str, Any]:

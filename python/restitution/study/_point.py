@@ -11,6 +11,7 @@ import xarray as xr
 
 from restitution import _core
 from restitution._core import STOP_REASONS
+from restitution._internal.arrays import FloatArray
 from restitution._internal.process import uninterrupted
 from restitution.bodies import Body, RigidBody
 from restitution.drop.dataset import dataset
@@ -21,7 +22,6 @@ from restitution.study._axes import Design
 from restitution.study._study import Study
 from restitution.study._tables import DERIVED, MOVED, with_errors
 
-FloatArray = npt.NDArray[np.float64]
 Words = npt.NDArray[np.uint64]
 Tell = Callable[[int], None]
 
@@ -150,7 +150,7 @@ def _real(measured: xr.Dataset) -> list[Hashable]:
     return [name for name, variable in measured.data_vars.items() if variable.dtype.kind == "f"]
 
 
-def _values(found: xr.Dataset, name: str) -> npt.NDArray[np.float64]:
+def _values(found: xr.Dataset, name: str) -> FloatArray:
     return np.asarray(found[name].to_numpy(), dtype=np.float64, order="C")
 
 

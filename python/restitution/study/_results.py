@@ -198,12 +198,8 @@ def study_in(path: Path) -> Study:
         found = {key: value for key, value in said.items() if key != "physics"}
         if "measure" in found:
             found["measure"] = {key: found["measure"][key] for key in ("function", "of")}
-        effort = dict(found["effort"])
-        if not effort["until"]:
-            del effort["most_particles"]
-        if effort["velocities"] is None:
-            del effort["velocities"]
+        found["effort"] = dict(found["effort"])
     try:
-        return study_of({**found, "sweep": design_again(found.get("sweep")), "effort": effort})
+        return study_of({**found, "sweep": design_again(found.get("sweep"))})
     except ValueError as error:
         raise ValueError(f"{path}: its study cannot be made again: {error}") from None

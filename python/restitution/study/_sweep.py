@@ -3,7 +3,7 @@
 import random
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -203,12 +203,9 @@ def _copy(part: Store, store: Store, wanted: Study) -> None:
 
 
 @contextmanager
-def _bar(total: int, *, show: bool) -> Iterator[Any]:
-    """Show a bar of the tasks; yield what takes the progress, or None."""
-    if not show:
-        yield None
-        return
-    with bar_of(show=True, total=total, desc="sweep", unit=" tasks", smoothing=0.05) as bar:
+def _bar(total: int, *, show: bool) -> Iterator[Callable[[Progress], None]]:
+    """Show a bar of the tasks; yield what takes the progress."""
+    with bar_of(show=show, total=total, desc="sweep", unit=" tasks", smoothing=0.05) as bar:
 
         def tell(progress: Progress) -> None:
             bar.total = progress.tasks

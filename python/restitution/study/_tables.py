@@ -21,6 +21,7 @@ from restitution._internal.parameters import (
     unknown,
     wrong,
 )
+from restitution.distribution import quantiles
 from restitution.drop.run import Run
 from restitution.drop.statistics import MOMENTS, Edges
 
@@ -248,8 +249,6 @@ class Learn(Parameters):
 
     def __call__(self, run: Run, statistics: xr.Dataset) -> xr.Dataset:
         """Return ``restitution_quantile`` (velocity, level); NaN where there are too few impacts."""
-        from restitution.distribution import quantiles
-
         level = xr.Variable("level", np.array(self.levels), {"long_name": "probability of a smaller one"})
         about = {"long_name": "quantile of restitution"}
         values = quantiles(statistics, np.array(self.levels))

@@ -25,11 +25,6 @@ class Engine:
         """Return how many calls should be under way: enough for no worker to wait for the next one."""
         return 2 * max(1, self.width()) + 2
 
-    def stop(self) -> None:
-        """Ask running calls to stop."""
-        if self.event is not None:
-            self.event.set()
-
 
 @contextmanager
 def engine(client: Any, threads: int | None) -> Iterator[Engine]:
