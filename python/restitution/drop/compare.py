@@ -14,17 +14,7 @@ from restitution._internal.arrays import several
 from restitution._internal.parameters import ParameterError, Parameters, Problem, shown, wrong
 from restitution._internal.resources import progress_bar
 from restitution.bodies import AnyBody, Rough, RoughSphere
-from restitution.drop.energy import (
-    LEDGER,
-    NO_PULL,
-    PULLING,
-    EnergyWarning,
-    PullWarning,
-    gains,
-    percent,
-    reported_elsewhere,
-    tell,
-)
+from restitution.drop.energy import LEDGER, PULLING, percent, reported_elsewhere, tell, told
 from restitution.drop.simulate import SimulationInterrupted
 from restitution.drop.statistics import statistics
 from restitution.laws import CollisionLaw
@@ -275,11 +265,7 @@ def _values(one: Parameters) -> Iterator[tuple[str, Any, str]]:
 
 
 def _warn(found: xr.Dataset) -> None:
-    largest = {"largest_energy_ratio": float(found["largest_energy_ratio_of_all"].max())}
-    for category, did, name, more in (
-        (EnergyWarning, "created kinetic energy", "energy_created_impacts", gains(largest)),
-        (PullWarning, "let the plane pull", "pulling_impacts", NO_PULL),
-    ):
+    for category, did, name, more in told(float(found["largest_energy_ratio_of_all"].max())):
         laws = [str(law) for law in found["law"].values[found[name].sum("body") > 0]]
         share = float((found[name] / np.maximum(found["all_impacts"], 1)).max())
         where = f"in up to {percent(share)} of the impacts of a run" if laws else ""

@@ -1,7 +1,7 @@
 """The ledger of every run: impacts that created energy or let the plane pull, and warnings of them."""
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from decimal import Decimal
 from typing import Any
@@ -130,16 +130,16 @@ def warn(data: xr.Dataset, *, stacklevel: int = 2) -> None:
     """Warn once if the run behind `data` created energy, and once if it let the plane pull."""
     about = data.attrs
     law, impacts = about["law"], about["all_impacts"]
-    for category, did, number, more in (
-        (EnergyWarning, "created kinetic energy", about["energy_created_impacts"], gains(about)),
-        (PullWarning, "let the plane pull", about.get("pulling_impacts", 0), NO_PULL),
-    ):
-        tell(category, f"{law} {did}", share(number, impacts, "impacts"), more, stacklevel=stacklevel + 1)
+    for category, did, number, more in told(about.get("largest_energy_ratio", 1.0)):
+        where = share(about.get(number, 0), impacts, "impacts")
+        tell(category, f"{law} {did}", where, more, stacklevel=stacklevel + 1)
 
 
-def gains(about: Mapping[str, Any]) -> str:
-    """Say by which factor impacts created energy, and why."""
-    return f"at most by a factor of {factor(about.get('largest_energy_ratio', 1.0))}. {WHY}"
+def told(largest: float) -> Iterator[tuple[type[Warning], str, str, str]]:
+    """Yield each warning: its kind, what the law did, the attribute that counts such impacts, and why."""
+    gains = f"at most by a factor of {factor(largest)}. {WHY}"
+    yield EnergyWarning, "created kinetic energy", "energy_created_impacts", gains
+    yield PullWarning, "let the plane pull", "pulling_impacts", NO_PULL
 
 
 def share(number: int, of: int, what: str) -> str:

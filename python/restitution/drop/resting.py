@@ -38,11 +38,8 @@ _FLAT = 1e-9
 """Faces of a hull are one where their normals and distances differ by less, relative to the size."""
 
 
-class _Pass(NamedTuple):
-    """Between two faces, over an edge or a rim: the height of the centre of mass above the plane there."""
-
-    faces: tuple[int, int]
-    height: float
+_Pass = tuple[tuple[int, int], float]
+"""Two faces, and over the edge or rim between them the height of the centre of mass above the plane."""
 
 
 class _Landscape(NamedTuple):
@@ -64,7 +61,7 @@ class _Landscape(NamedTuple):
         level = np.full(len(self.heights), np.inf)
         part = [{face} for face in range(len(self.heights))]
         wells = set(self.wells().tolist())
-        for (f, g), height in sorted(self.passes, key=lambda one: one.height):
+        for (f, g), height in sorted(self.passes, key=lambda one: one[1]):
             if part[f] is part[g]:
                 continue
             held = [part[f] & wells, part[g] & wells]
@@ -129,7 +126,7 @@ class _Polyhedron:
                     turn = edge.angle(normals[face[j]])
                     over = 0.0 < edge.angle(edge.foot) < turn
                     highest = np.linalg.norm(edge.foot) if over else max(heights[list(edge.faces)])
-                    passes.append(_Pass(edge.faces, float(highest)))
+                    passes.append((edge.faces, float(highest)))
         self.landscape = _Landscape(normals, heights, passes)
 
     def _edge(self, faces: tuple[int, int], ends: tuple[int, int], normals: FloatArray) -> _Edge:
@@ -179,7 +176,7 @@ class _Turned:
             f, g = i + self.before - 1, i + self.before
             if f >= 0 and g < len(angles):
                 over = angles[f] < top < angles[g]
-                passes.append(_Pass((f, g), float(np.hypot(*rim) if over else max(heights[[f, g]]))))
+                passes.append(((f, g), float(np.hypot(*rim) if over else max(heights[[f, g]]))))
         self.landscape = _Landscape(normals, heights, passes)
 
     def below(self, down: FloatArray) -> int:
@@ -234,7 +231,7 @@ class _Sampled:
         normals = np.array([_lowest(h, grid[point], near) for point in wells])
         number_of = {int(point): i for i, point in enumerate(wells)}
         passes = [
-            _Pass((number_of[well(f)], number_of[well(g)]), height)
+            ((number_of[well(f)], number_of[well(g)]), height)
             for (f, g), height in lowered.items()
             if well(f) != well(g)
         ]
