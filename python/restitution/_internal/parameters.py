@@ -214,15 +214,11 @@ def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Proble
                 yield Problem(name, ": missing; must be ", _allowed(model, name))
             case "extra_forbidden":
                 yield unknown(name, model.__name__, model.model_fields)
-            case "value_error":
-                cause = problem["ctx"]["error"]
-                if isinstance(cause, ParameterError):
-                    yield from cause.problems
-                elif isinstance(cause, _core.ParameterError):
-                    yield wrong(cause.name, cause.value, cause.allowed)
-                else:  # of the object that was given
-                    yield wrong(name, problem["input"], _allowed(model, name))
-            case _:
+            case "value_error" if isinstance(cause := problem["ctx"]["error"], ParameterError):
+                yield from cause.problems
+            case "value_error" if isinstance(cause, _core.ParameterError):
+                yield wrong(cause.name, cause.value, cause.allowed)
+            case _:  # also an error of the object that was given
                 yield wrong(name, problem["input"], _allowed(model, name))
 
 

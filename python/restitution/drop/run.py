@@ -81,29 +81,20 @@ def takes_run(kind: type[Surroundings]) -> Callable[[F], F]:
         own = dict(signature.parameters)
         del own["run"]
         first = {name: own.pop(name) for name in ("cls", "body", "law") if name in own}
-        of_run = {
-            name: own.pop(name)
-            if name in own
-            else inspect.Parameter(
-                name,
-                inspect.Parameter.KEYWORD_ONLY,
-                default=None if name in _NONE else field.default,
-                annotation=types[name],
-            )
-            for name, field in Run.model_fields.items()
-            if name in own or name in types
-        }
+        of_run, keyword = {}, inspect.Parameter.KEYWORD_ONLY
+        for name, field in Run.model_fields.items():
+            if name in own:
+                of_run[name] = own.pop(name)
+            elif name in types:
+                default = None if name in _NONE else field.default
+                of_run[name] = inspect.Parameter(name, keyword, default=default, annotation=types[name])
         changed = signature.replace(parameters=[*first.values(), *of_run.values(), *own.values()])
         function.__signature__ = changed  # type: ignore[attr-defined]
         if function.__doc__ and Run.__doc__:  # None under python -OO
             entries = _text.entries(Run.__doc__).items()
             text = "\n".join(entry for name, entry in entries if name in types)
-            function.__doc__ = re.sub(
-                r"^( *)%\(run\)s$",
-                lambda line: indent(text, line[1]),
-                function.__doc__,
-                flags=re.MULTILINE,
-            )
+            run = re.compile(r"^( *)%\(run\)s$", re.MULTILINE)
+            function.__doc__ = run.sub(lambda line: indent(text, line[1]), function.__doc__)
         return function
 
     return decorate
