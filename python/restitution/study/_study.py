@@ -107,25 +107,20 @@ class Study:
     @cached_property
     def identity(self) -> dict[str, Any]:
         """Everything that the results depend on, as plain values."""
-        edges = self.edges or {}
-        bins = {f"{name}_bins": own.tolist() for name, own in edges.items() if own is not None}
-        return {
-            **tables_of(self.base),
-            **(
-                {"body": [{"name": name, **table_of(one)} for name, one in self.bodies.items()]}
-                if self.bodies
-                else {}
-            ),
-            "sweep": {
-                "design": self.design.kind,
-                **{axis.parameter: list(axis.values) for axis in self.design.axes},
-            },
-            **({"statistics": bins} if self.edges else {}),
-            **{name: form.model_dump(mode="json", exclude_none=True) for name, form in self.forms.items()},
-            **({"measure": {"of": self.of, **_named(self.measure)}} if self.measure else {}),
-            **({"first_impact": {}} if self.first_impact else {}),
-            "effort": self.effort.table(),
-        }
+        found = tables_of(self.base)
+        if self.bodies:
+            found["body"] = [{"name": name, **table_of(one)} for name, one in self.bodies.items()]
+        varied = {axis.parameter: list(axis.values) for axis in self.design.axes}
+        found["sweep"] = {"design": self.design.kind, **varied}
+        if self.edges:
+            bins = {f"{name}_bins": own.tolist() for name, own in self.edges.items() if own is not None}
+            found["statistics"] = bins
+        found |= {name: form.model_dump(mode="json", exclude_none=True) for name, form in self.forms.items()}
+        if self.measure:
+            found["measure"] = {"of": self.of, **_named(self.measure)}
+        if self.first_impact:
+            found["first_impact"] = {}
+        return found | {"effort": self.effort.table()}
 
     @cached_property
     def digest(self) -> bytes:
