@@ -1,6 +1,6 @@
 """The commands `restitution sweep STUDY.toml` and `restitution sweep merge`."""
 
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -91,6 +91,7 @@ def run(
     with errors_in_a_line("xarray"):
         from restitution.study import estimate, study_of, sweep
         from restitution.study import status as status_of
+        from restitution.study.engines import client_at
 
         if status:
             say(str(status_of(out)))
@@ -103,17 +104,9 @@ def run(
             say(str(estimate(study_of(study), number)))
             return
         part = None if shard is None else _shard(shard)
-        options: dict[str, Any] = {"threads": threads, "shard": part, "progress": progress(quiet)}
         try:
-            if scheduler is None:
-                sweep(study, out, **options)
-            else:
-                from restitution.study.engines import client_at
-
-                with client_at(scheduler) as client:
-                    sweep(study, out, client, **options)
-        except ImportError as error:
-            raise RuntimeError(str(error)) from None
+            with nullcontext() if scheduler is None else client_at(scheduler) as client:
+                sweep(study, out, client, threads=threads, shard=part, progress=progress(quiet))
         except KeyboardInterrupt:
             with suppress(ValueError, OSError):  # it may not be there yet
                 tell(f"{out}: {status_of(out)} The same command continues.")
