@@ -1,4 +1,4 @@
-//! How often a dumbbell leaves the plane faster than it came.
+//! The share of impacts in which a dumbbell leaves the plane faster than it came.
 
 use restitution_core::{Dumbbell, Monitor, Resources, Run};
 

@@ -93,7 +93,7 @@ impl<I: Iterator<Item = u64>> WithSimd for Row<'_, I> {
     }
 }
 
-/// What is asked for of two uniform numbers.
+/// The numbers that are made of two uniform ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberForm {
     /// Themselves.

@@ -31,7 +31,7 @@ _OWN = {
     "a LaTeX source, such as fit.tex": ".tex",
     "a folder": "",
 }
-"""What the package writes under names that are given, in the words of an error, and how such names end."""
+"""Files that the package writes under names that are given, in the words of an error, and their endings."""
 NETCDF, ZARR, HEADER, MODULE, IMAGE, FILM, TABLE, LATEX, FOLDER = _OWN
 _OTHERS = (
     ".c .cc .cpp .f .for .py .rs .jl .m .r .ipynb .tsv .txt .md .html .htm .json .toml .yaml .yml "

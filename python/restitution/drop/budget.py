@@ -110,7 +110,7 @@ _MEANS = {
         "1",
     ),
 }
-"""What they are, and their units."""
+"""The quantities, and their units."""
 
 
 def budget_by_row(

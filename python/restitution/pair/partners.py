@@ -1,4 +1,4 @@
-"""What encounters and gases know of the bodies that meet: their material, their axes and their states."""
+"""The material, the axes and the states of bodies that meet, in encounters and in gases."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -58,7 +58,7 @@ pub(crate) struct RoundParts<'a> {
     pub reach: f64,
 }
 
-/// What a look at two of them finds: a certified step, the rate of the gap, a bound on |f″|.
+/// The result of a look at two of them: a certified step, the rate of the gap, a bound on |f″|.
 pub(crate) struct RoundStep<S: Simd> {
     pub clear: Pack<S>,
     pub rate: Pack<S>,

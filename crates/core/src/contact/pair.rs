@@ -672,7 +672,7 @@ fn freely(
     Some((n, now.width))
 }
 
-/// What [`freely`] maximises, with [`Round::support`] of both parts.
+/// The function that [`freely`] maximises, with [`Round::support`] of both parts.
 struct RoundGap {
     width: f64,
     pushed: [(Vector, f64); 2],

@@ -279,7 +279,7 @@ impl<'a> JoinedRuns<'a> {
         self.0[self.0.len() - 1].numbers.end
     }
 
-    /// What is the same for all particles.
+    /// The values that are the same for all particles.
     #[inline(always)]
     pub fn plan(&self) -> &Plan<'a> {
         &self.0[0].plan

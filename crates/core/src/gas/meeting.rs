@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Candidate {
     pub pair: [usize; 2],
-    /// What decides whether they do.
+    /// The number that decides whether they do.
     pub chance: f64,
     /// Its number among the candidates of all batches.
     pub number: u64,
@@ -53,7 +53,7 @@ pub(super) struct Candidates<'a, 'b, 'c> {
     pub meetings: &'a mut Vec<MeetingLine>,
 }
 
-/// How many have touched, and how many were faster than the majorant.
+/// The numbers of those that have touched, and of those that were faster than the majorant.
 #[derive(Debug, Default)]
 pub(super) struct Decided {
     pub touched: usize,

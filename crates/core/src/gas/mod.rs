@@ -36,7 +36,7 @@ use std::sync::Mutex;
 
 /// The majorant of u over twice the largest speed at the last look at all of them.
 const ROOM: f64 = 1.02;
-/// What is added to it for velocities that noise changes until the next look: seven standard deviations of it.
+/// Its increase for velocities that noise changes until the next look: seven standard deviations of it.
 const NOISE: f64 = 0.1;
 const DEVIATIONS: f64 = 7.0;
 /// Turns, on average, after which a phase counts as uniform.
@@ -105,9 +105,9 @@ pub struct Gas<'a> {
     pub heating: f64,
     /// The state of every particle at the beginning, instead of Maxwellians: of batch after batch, and in each of kind after kind.
     pub given: Option<&'a [[f64; STATE]]>,
-    /// Whether the states at the end are kept.
+    /// True if the states at the end are kept.
     pub keep: bool,
-    /// Whether distributions are counted at each look.
+    /// True if distributions are counted at each look.
     pub distributions: bool,
     /// Looks at the gas after the first.
     pub samples: usize,
@@ -734,7 +734,7 @@ impl<'a> Batch<'a> {
         Ok(())
     }
 
-    /// What an encounter at a time does to two particles.
+    /// Applies an encounter at a time to two particles.
     #[inline(always)]
     fn met(&mut self, candidate: &Candidate, approach: &Approach, outcome: &Outcome<FreeBody>) {
         let Candidate { pair, time, .. } = *candidate;

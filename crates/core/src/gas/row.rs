@@ -30,7 +30,7 @@ pub(super) struct CandidateRow {
     number: u64,
     pairs: [[u32; ROW]; 2],
     chances: [f64; ROW],
-    /// What decides, in [`PARTS`], rounded down.
+    /// The number that decides, in [`PARTS`], rounded down.
     parts: [u32; ROW],
 }
 

@@ -1,4 +1,4 @@
-//! What every law is: its entry in the table, and what the bounce loop asks of it.
+//! The entry of a law in the table, and what the bounce loop asks of it.
 
 use super::{Contact, CustomLaw, Response, Rule};
 use crate::describe::Kind;

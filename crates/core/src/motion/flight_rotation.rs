@@ -207,7 +207,7 @@ impl BodyFrame {
         Vector::new(x.dot(v), y.dot(v), z.dot(v))
     }
 
-    /// What is round of a part, in space; of a body of revolution it is symmetric about the axis.
+    /// The round portion of a part, in space; of a body of revolution it is symmetric about the axis.
     #[inline(always)]
     pub fn round(&self, round: &Round) -> Round {
         match round {

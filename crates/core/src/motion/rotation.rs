@@ -18,7 +18,7 @@ use pulp::{Scalar, Simd, WithSimd};
 pub struct Rotation {
     top: Top,
     closed: Rotations<Scalar>,
-    /// What serves instead. Rare, and four times as large as all else, so that it is not moved about with the others.
+    /// Series, where these do not serve. Rare, and four times as large as all else, so that it is not moved about with the others.
     series: Option<Box<Series>>,
 }
 

@@ -1,4 +1,4 @@
-//! What is recorded: variables with their metadata, a line each, and the columns of their values.
+//! Records: variables with their metadata, a line each, and the columns of their values.
 
 mod column;
 mod variable;

@@ -33,7 +33,7 @@ pub struct Variable {
     pub meanings: &'static [&'static str],
     /// The names of its components; none of a number.
     pub components: &'static [&'static str],
-    /// Whether each of two bodies has a value.
+    /// True if each of two bodies has a value.
     pub each: bool,
     /// The type of its elements.
     pub kind: Element,

@@ -26,7 +26,7 @@ pub(crate) struct Piece {
     pub extents: [f64; 3],
 }
 
-/// What is round of a part.
+/// The round portion of a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Round {
     /// B.

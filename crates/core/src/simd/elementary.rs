@@ -13,7 +13,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LN_2, LOG
 /// Largest |x|, in rad, for which sine and cosine are accurate.
 pub const RANGE: f64 = 1_048_576.0;
 
-/// What π/2 has beyond its double.
+/// π/2 less its double.
 const HALF_PI_LOW: f64 = 6.123_233_995_736_766e-17;
 /// 1.5 · 2⁵²: adding it rounds to the nearest integer and leaves that integer in the low bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;

@@ -1,4 +1,4 @@
-//! What consists of packs and masks, and has a value in each lane as they have.
+//! Structures of packs and masks, with a value in each lane as these have.
 
 use super::{Mask, Pack};
 use pulp::Simd;

@@ -16,7 +16,7 @@ from restitution.figures.style import Style, colors, column, ink, panels, styled
 
 
 class _Look(NamedTuple):
-    """How a source is called and drawn: number of its colour, or strength of a grey, and marker."""
+    """Name and style of a source: number of its colour, or strength of a grey, and marker."""
 
     words: str
     color: int | None

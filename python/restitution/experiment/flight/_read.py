@@ -342,4 +342,4 @@ _FORMATS: dict[str, tuple[Callable[[Table, str], list[Impact] | None], str]] = {
     "tracker": (_tracker, "columns t and y"),
     "csv": (_plain, "a column 'time' or 't'"),
 }
-"""What reads each, and what it needs; in the order in which they are tried: each knows its own."""
+"""The readers, and what each needs; in the order in which they are tried: each knows its own."""

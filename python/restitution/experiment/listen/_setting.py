@@ -1,4 +1,4 @@
-"""What is known of an experiment besides its recording."""
+"""The knowledge of an experiment besides its recording."""
 
 from typing import Annotated, Self
 

@@ -102,7 +102,7 @@ class Sideview:
 
     @property
     def reach(self) -> float:
-        """How far the surface is from the centre of mass, at most, in mm."""
+        """Largest distance of the surface from the centre of mass, in mm."""
         return 1e3 * self.body.compiled.farthest()
 
     @property

@@ -829,7 +829,7 @@ impl OngoingImpact<'_> {
                 && dot(&QUADRATURE.weights, &panel.growth).abs() < 1.0
     }
 
-    /// What the restitution has to give, over a panel.
+    /// The work or, by the other hypotheses, the impulse that the restitution has to give, over a panel.
     #[inline(always)]
     fn given(&self, panel: &Panel) -> Nodal {
         match self.now.hypothesis {

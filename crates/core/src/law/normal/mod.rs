@@ -148,7 +148,7 @@ impl<S: Simd> WithSimd for Coefficients<'_, '_, S> {
     }
 }
 
-/// What a normal coefficient is made of.
+/// A normal coefficient of each of the kinds that there are.
 macro_rules! made_of {
     ($($kind:ty: $variant:ident),*) => {
         $(impl<'a> From<$kind> for Normal<'a> {

@@ -34,7 +34,7 @@ pub(super) struct LanePair<'a, 'b, B> {
     reach: f64,
 }
 
-/// What touches.
+/// The surfaces that can touch.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Surfaces {
     /// Balls about the centres.
@@ -63,7 +63,7 @@ pub(super) trait LaneBody: Sized {
     fn new(body: &Partner) -> Option<Self>;
     /// Its balls, if it consists of them.
     fn balls(&self) -> &[LaneBall];
-    /// What touches of two of them.
+    /// The surfaces of two of them that can touch.
     fn surfaces(bodies: [&Partner; 2], shapes: &[Self; 2]) -> Option<Surfaces>;
 }
 
@@ -251,7 +251,7 @@ pub(super) struct Encountering<S: Simd, F> {
     moment: Vectors<S>,
 }
 
-/// What a look finds: the time up to which nothing touches, and of the two balls that may touch then their number from 1 on, rate and bound of the gap.
+/// The result of a look: the time up to which nothing touches, and of the two balls that may touch then their number from 1 on, rate and bound of the gap.
 pub(super) struct NearestParts<S: Simd> {
     clear: Pack<S>,
     balls: Pack<S>,
