@@ -296,13 +296,11 @@ class Run(Parameters):
 
     def parameters(self) -> dict[str, Any]:
         """Name every parameter as the core does, compiled where the core knows it as an object of its own."""
-        compiled = {"body": self.body.compiled, "law": self.law.compiled}
+        found = {name: getattr(self, name) for name in type(self).model_fields}
         for name in ("release_height", "spin"):
-            value = getattr(self, name)
-            random = isinstance(value, RandomHeight | RandomSpin)
-            compiled[name] = value.parameters() if random else value
-        parameters = {name: compiled.get(name, getattr(self, name)) for name in type(self).model_fields}
-        return parameters | {"settled": 0.0}
+            if isinstance(found[name], RandomHeight | RandomSpin):
+                found[name] = found[name].parameters()
+        return found | {"body": self.body.compiled, "law": self.law.compiled, "settled": 0.0}
 
     def attributes(self) -> dict[str, Any]:
         """Return every parameter under its own name, as plain values that a netCDF file can hold."""
