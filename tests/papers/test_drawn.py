@@ -89,6 +89,14 @@ def test_data_file_holds_all_that_is_drawn(name: str, saved: dict[str, SavedFigu
             np.testing.assert_array_equal(pixels(FIGURES[name].draw(read)), pixels(FIGURES[name].draw(fresh)))
 
 
+@pytest.mark.parametrize("name", ["figure-2-sensitivity", "figure-6-sensitivity"])
+def test_a_data_file_says_of_the_runs_what_all_have(name: str, saved: dict[str, SavedFigure]) -> None:
+    """Radius and release height differ between the curves, so neither is an attribute; the law is."""
+    with xr.open_dataset(saved[name].png.with_suffix(".nc")) as read:
+        assert not {"radius", "release_height", "separation"} & set(read.attrs)
+        assert read.attrs["normal"] == SMALL.normal
+
+
 @pytest.mark.parametrize("name", FIGURES)
 def test_every_axis_says_what_it_shows(name: str, runs: Runs) -> None:
     """Outer axes carry labels, velocities their unit, maps a colour bar."""

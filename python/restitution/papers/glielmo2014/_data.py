@@ -70,7 +70,7 @@ def bead_deviation(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 6: standard deviation of restitution against impact velocity, by elongation."""
     edges = mesh(*s.deviation_range, s.deviation_mesh)
     drawn = _deviations(runs.beads, "elongation", edges, runs.beads_counted)
-    return drawn.assign_attrs(counted(*runs.beads_counted.values()))
+    return drawn.assign_attrs(recorded(*runs.beads.values()) | counted(*runs.beads_counted.values()))
 
 
 def first_impact(runs: Runs, s: Settings) -> xr.Dataset:
@@ -118,7 +118,7 @@ def deviation_sensitivity(runs: Runs, s: Settings) -> xr.Dataset:
     for axis, by in (("radius", runs.by_radius), ("height", runs.by_height)):
         side = _deviations({value: pair[x] for value, pair in by.items()}, axis, edges)
         sides.append(side.rename({name: f"{name}_by_{axis}" for name in side.data_vars}))
-    return xr.merge(sides, combine_attrs="override").assign_attrs(recorded(*_varied(runs, x)))
+    return xr.merge(sides).assign_attrs(recorded(*_varied(runs, x)))
 
 
 def _varied(runs: Runs, elongation: float) -> list[xr.Dataset]:
@@ -162,8 +162,7 @@ def _deviations(
                 }
             )
         )
-    joined = xr.concat(parts, xr.DataArray(list(by), dims=axis, name=axis))
-    return joined.assign_attrs(recorded(*by.values()))
+    return xr.concat(parts, xr.DataArray(list(by), dims=axis, name=axis))
 
 
 def _quantiles(data: xr.Dataset, edges: FloatArray) -> xr.Dataset:
