@@ -57,9 +57,8 @@ def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit, style: Style 
     known = [one.isel(impact=np.flatnonzero(np.isfinite(one.restitution.values))) for one in named.values()]
     speeds = np.concatenate([one.impact_velocity.values for one in known])
     if not speeds.size:
-        raise ParameterError(
-            wrong("data", data, "a Dataset of flight.restitution with at least one coefficient")
-        )
+        allowed = "a Dataset of flight.restitution with at least one coefficient"
+        raise ParameterError(wrong("data", data, allowed))
     for fit in fits:
         if not isinstance(fit, LawFit):
             raise ParameterError(wrong("fits", fit, "fits, as flight.fit returns them"))

@@ -72,10 +72,9 @@ def fit(
     known = ~np.isnan(links.before) & ~np.isnan(links.after)
     free = len(form.parameters)
     if known.sum() <= free:
-        allowed = f"at least {free + 1} coefficients, to fit the law {form.name!r}"
-        raise ParameterError(
-            Problem("data", f": {known.sum()} coefficients of restitution; must have {allowed}")
-        )
+        needed = f"at least {free + 1} coefficients, to fit the law {form.name!r}"
+        text = f": {known.sum()} coefficients of restitution; must have {needed}"
+        raise ParameterError(Problem("data", text))
     if not (isinstance(scatter, str) and scatter == "fit"):
         allowed = '"fit" or a number in [0, 1e30]'
         scatter = real("scatter", scatter, allowed, lambda width: 0.0 <= width <= LARGEST)
@@ -84,9 +83,8 @@ def fit(
         raise ParameterError(Problem("groups", f": given with scatter = {scatter!r}; must come with 'fit'"))
     problem = Misfit(form, experiments, known, number)
     if scatter == 0.0 and not problem.errors_are_known:
-        raise ParameterError(
-            Problem("data", ": times without errors; must have an uncertainty > 0, or give scatter='fit'")
-        )
+        text = ": times without errors; must have an uncertainty > 0, or give scatter='fit'"
+        raise ParameterError(Problem("data", text))
     note = ""
     if scatter == "fit" and not any(one.variances[: one.times.size].any() for one in experiments):
         found = separation(experiments)
@@ -97,9 +95,8 @@ def fit(
     try:
         return replace(problem.fit(scatter), note=note)
     except (np.linalg.LinAlgError, ValueError):  # of Cholesky, or of least squares that met a NaN
-        raise ParameterError(
-            Problem("data", f": the law {form.name!r} has no fit; errors must be small beside the intervals")
-        ) from None
+        text = f": the law {form.name!r} has no fit; errors must be small beside the intervals"
+        raise ParameterError(Problem("data", text)) from None
 
 
 def _numbered(groups: object, series: int) -> npt.NDArray[np.intp] | None:
@@ -147,13 +144,6 @@ def compare(*fits: LawFit) -> str:
     for one in ordered:
         words = str(one).removeprefix(one.law + ": ").split(";")[0]
         chance = "" if one.scatter_error > 0.0 else f"{one.p_value:.2g}"
-        cells = (
-            one.law,
-            words,
-            f"{one.chi2:.1f}",
-            str(one.degrees_of_freedom),
-            chance,
-            f"{one.aic - best:.1f}",
-        )
-        lines.append(f"| {' | '.join(cells)} |")
+        quality = f"{one.chi2:.1f} | {one.degrees_of_freedom} | {chance} | {one.aic - best:.1f}"
+        lines.append(f"| {one.law} | {words} | {quality} |")
     return "\n".join(lines)

@@ -163,13 +163,10 @@ class Misfit:
         return np.asarray(slopes.T @ cho_solve(factor, slopes))
 
     def least_squares(self, start: Array, scatter: Scatter) -> Array:
-        scale = np.maximum(np.abs(start), 1e-3)
-
-        def misfit(values: Array) -> Array:
-            return self.whitened(values, scatter)
-
-        bounds = (self.form.least, np.inf)
-        found = least_squares(misfit, start, x_scale=scale, bounds=bounds, xtol=1e-12, ftol=1e-12)
+        scale, bounds = np.maximum(np.abs(start), 1e-3), (self.form.least, np.inf)
+        found = least_squares(
+            self.whitened, start, args=(scatter,), x_scale=scale, bounds=bounds, xtol=1e-12, ftol=1e-12
+        )
         return np.asarray(found.x)
 
     def fit(self, scatter: float | Literal["fit"]) -> LawFit:

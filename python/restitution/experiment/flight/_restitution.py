@@ -222,15 +222,12 @@ def clock(data: xr.Dataset) -> xr.Dataset:
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         ratio[..., 1:-1] = flight[..., 1:] / flight[..., :-1]
     ratio[~np.isfinite(ratio)] = np.nan
+    of_velocity = {
+        "long_name": "impact velocity from the time of flight",
+        "units": "m s-1",
+        "symbol": "g Δt/2",
+    }
+    of_ratio = {"long_name": "coefficient of restitution from the times of flight", "units": "1"}
     return data.assign(
-        clock_velocity=(
-            shape,
-            velocity,
-            {"long_name": "impact velocity from the time of flight", "units": "m s-1", "symbol": "g Δt/2"},
-        ),
-        clock_restitution=(
-            shape,
-            ratio,
-            {"long_name": "coefficient of restitution from the times of flight", "units": "1"},
-        ),
+        clock_velocity=(shape, velocity, of_velocity), clock_restitution=(shape, ratio, of_ratio)
     )

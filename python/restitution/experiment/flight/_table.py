@@ -80,9 +80,8 @@ def tables(path: Path) -> list[Table]:
             text = ": a spreadsheet, which needs python-calamine: pip install 'restitution[measure]'"
             raise ParameterError(Problem(str(path), text)) from error
         except Exception as error:  # what these libraries raise on damaged files is anything
-            raise ParameterError(
-                Problem(str(path), f": a damaged spreadsheet or archive ({error})")
-            ) from error
+            text = f": a damaged spreadsheet or archive ({error})"
+            raise ParameterError(Problem(str(path), text)) from error
     else:
         found = [_text(str(path), "", held)]
     found = [table for table in found if table.rows]

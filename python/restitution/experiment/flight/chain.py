@@ -153,12 +153,8 @@ def measured_of(data: xr.Dataset, name: str = "data") -> Measured:
         If impacts between others are left out, or a time or an attribute is not as `restitution` has it.
     """
     check_successive(name, data)
-    times, errors = check_series(
-        data["time"].to_numpy().astype(np.float64),
-        data["uncertainty"].to_numpy().astype(np.float64),
-        f"{name}.time",
-        f"{name}.uncertainty",
-    )
+    times, errors = (data[each].to_numpy().astype(np.float64) for each in ("time", "uncertainty"))
+    times, errors = check_series(times, errors, f"{name}.time", f"{name}.uncertainty")
     once, drag, contact = setting_of(name, data)
     if int(data["impact"][0]) > 0:
         once = once.model_copy(update={"drop_height": None})
@@ -205,9 +201,8 @@ def joined(experiments: list[Measured], shift: Array | None) -> Chain:
         (one.gravity, one.terminal, one.contact, *one.variances[[-COMMON, -3, -2, -1]]) for one in experiments
     ]
     if len(set(common)) != 1:
-        raise ParameterError(
-            Problem("data", ": series with different g, drag, contact time or clock; must have the same")
-        )
+        text = ": series with different g, drag, contact time or clock; must have the same"
+        raise ParameterError(Problem("data", text))
     sizes = [one.times.size for one in experiments]
     total = sum(sizes)
     columns = total + len(experiments) + COMMON - 1

@@ -5,7 +5,6 @@ from typing import Literal
 
 import numpy as np
 
-from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.text import digits, with_error
 from restitution.experiment.flight.chain import Measured, joined
 
@@ -43,41 +42,30 @@ KNOWN = Separation(0.0, 0.0, "")
 def separation(experiments: list[Measured]) -> Separation:
     """Separate errors of times that came without an uncertainty from a scatter of ε.
 
-    The first impact after a drop depends on its height and on g, and is left out.
-    """
-    links = joined(experiments, None)
-    ratio = links.after / links.before
-    times, drops = ratio.size, slice(-len(experiments), None)
-    known = np.isfinite(ratio) & ~np.any(links.before_by[:, drops], axis=1)
-    slopes = links.after_by[known, :times] - ratio[known, None] * links.before_by[known, :times]
-    return separated(links.before[known], ratio[known], slopes / links.before[known, None])
-
-
-def separated(speed: Array, ratio: Array, by_times: Array) -> Separation:
-    """Separate them by restricted likelihood, beside a law ε = a + b ln v.
+    It is done by restricted likelihood, beside a law ε = a + b ln v. The first impact after a drop depends on
+    its height and on g, and is left out.
 
     A time enters three coefficients, with alternating signs and the more the shorter the flights; the
     scatter of ε is independent from one to the next and the same at all speeds. In the space left by a and
     b, and in the eigenvectors of A = (∂ε/∂t)(∂ε/∂t)ᵀ there, the variance of component k is s² λ_k + σ², of
     which the share of σ² is varied and the sum is the most likely one.
-
-    Parameters
-    ----------
-    speed, ratio : ndarray, shape (n,)
-        v and ε of each impact.
-    by_times : ndarray, shape (n, times)
-        Derivatives of ε by the times.
     """
 
     def told(words: str, timing: float = 0.0, scatter: float | Literal["fit"] = "fit") -> Separation:
         return Separation(timing, scatter, f"The times came without an uncertainty; {words}.")
 
+    links = joined(experiments, None)
+    ratio = links.after / links.before
+    times, drops = ratio.size, slice(-len(experiments), None)
+    known = np.isfinite(ratio) & ~np.any(links.before_by[:, drops], axis=1)
+    speed, ratio = links.before[known], ratio[known]
+    slopes = links.after_by[known, :times] - ratio[:, None] * links.before_by[known, :times]
     law = np.stack([np.ones_like(speed), np.log(speed)], axis=1)
     free = np.linalg.qr(law, mode="complete")[0][:, 2:]
     number = free.shape[1]
     if number < _FEWEST:
         return told(f"{ratio.size} coefficients do not separate their errors from a scatter of ε")
-    reduced = free.T @ by_times
+    reduced = free.T @ (slopes / speed[:, None])
     eigenvalues, vectors = np.linalg.eigh(reduced @ reduced.T)
     mean = float(eigenvalues.mean())
     components = vectors.T @ free.T @ ratio

@@ -16,6 +16,8 @@ QUARTZ = 1e-4
 """Relative standard error of a clock: telephones and sound cards keep to 100 parts in a million."""
 _ERROR_OR_NONE = Allowed("a finite number in [0, 1e30] (m/s²), or None")
 _HEIGHT_OR_NONE = Allowed("a real number in [1e-30, 1e+30] (m), or None")
+Length = Annotated[Number | None, Field(ge=0, description="m"), Allowed("a finite number >= 0 (m), or None")]
+"""Out-of-roundness or roughness of a ball; None where it was not measured."""
 T = TypeVar("T", bound=Parameters)
 
 

@@ -75,9 +75,8 @@ def check_series(instants: Array, errors: Array, times: str, uncertainty: str) -
     missed = np.isnan(instants)
     known = np.flatnonzero(~missed)
     if known.size < 2:
-        raise ParameterError(
-            Problem(times, f": {known.size} of {instants.size} are numbers; at least two must be")
-        )
+        text = f": {known.size} of {instants.size} are numbers; at least two must be"
+        raise ParameterError(Problem(times, text))
     good = missed | ((errors >= 0.0) & (errors <= LARGEST))
     check_each(uncertainty, errors, good, f"a number in [0, {LARGEST:g}] (s)")
     good = missed | (np.abs(instants) <= LARGEST)
@@ -98,19 +97,12 @@ def _of_dataset(data: xr.Dataset, *, doubtful: bool) -> tuple[Array, Array]:
         has = ", ".join(map(str, data.data_vars)) or "nothing"
         raise ParameterError(Problem("times", f": a Dataset without {' and '.join(missing)}; it has {has}"))
     if data.time.ndim != 1:
-        raise ParameterError(
-            Problem(
-                "times",
-                f": a Dataset whose time has dimensions {data.time.dims}; must be one series of impacts",
-            )
-        )
+        text = f": a Dataset whose time has dimensions {data.time.dims}; must be one series of impacts"
+        raise ParameterError(Problem("times", text))
     if "series" in data and np.unique(data.series.values).size > 1:
         numbers = ", ".join(str(number) for number in np.unique(data.series.values))
-        raise ParameterError(
-            Problem(
-                "times", f": a Dataset of series {numbers}; take one, data.where(data.series == 0, drop=True)"
-            )
-        )
+        text = f": a Dataset of series {numbers}; take one, data.where(data.series == 0, drop=True)"
+        raise ParameterError(Problem("times", text))
     instants, errors = _column(data, "time", "numbers, in s"), _column(data, "uncertainty", "numbers, in s")
     if data.time.dims == ("impact",) and "impact" in data.coords:  # of a recording there are no numbers
         check_successive("times", data)
