@@ -232,14 +232,11 @@ def _dataset(
     time, uncertainty, flag, level = np.concatenate(tables, axis=1)
     series = np.repeat(np.arange(len(tables)), [one.shape[1] for one in tables])
     of_time = {"long_name": "time of the impact from the beginning of the recording", "units": "s"}
+    of_error = {"long_name": "standard error of the time", "units": "s"}
     return xr.Dataset(
         {
             "time": ("impact", time, of_time),
-            "uncertainty": (
-                "impact",
-                uncertainty,
-                {"long_name": "standard error of the time", "units": "s"},
-            ),
+            "uncertainty": ("impact", uncertainty, of_error),
             "flag": ("impact", flag.astype(np.int8), flag_attributes()),
             "series": ("impact", series, {"long_name": "number of the series"}),
             "level": ("impact", level, {"long_name": "level over the noise", "units": "dB"}),

@@ -5,7 +5,7 @@ import shlex
 import shutil
 import subprocess
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -52,22 +52,23 @@ def load(source: str | PathLike[str] | npt.ArrayLike, rate: float | None) -> tup
     if isinstance(source, str | PathLike):
         path = path_from("source", source)
         name = str(path)
-        samples, own = _file(path)
+        check_regular(path)
+        path.open("rb").close()  # an OSError that names the file, if it cannot be read
+        with _decoded(path) if path.suffix.lower() in _DECODED else nullcontext(path) as readable:
+            samples, own = _read(readable, name)
         if rate is not None and rate != own:
             raise ParameterError(wrong("rate", given, f"left out, or {own:g}, which {name} says it has (Hz)"))
     else:
         name = "source"
         if rate is None:
-            raise ParameterError(
-                Problem("rate", ": missing; must be the samples per second of the array (Hz)")
-            )
+            text = ": missing; must be the samples per second of the array (Hz)"
+            raise ParameterError(Problem("rate", text))
         samples, own = _array(source), rate
     if not LOWEST_RATE <= own <= HIGHEST_RATE:
         raise ParameterError(Problem(name, f": {own:g} samples per second; must be at least {LOWEST_RATE:g}"))
     if samples.shape[0] < _SHORTEST * own:
-        raise ParameterError(
-            Problem(name, f": {samples.shape[0] / own:.3g} s of sound; must be at least {_SHORTEST} s")
-        )
+        text = f": {samples.shape[0] / own:.3g} s of sound; must be at least {_SHORTEST} s"
+        raise ParameterError(Problem(name, text))
     if not np.isfinite(samples).all():
         raise ParameterError(Problem(name, ": samples that are NaN or infinite; must be finite"))
     if not samples.shape[1]:
@@ -83,15 +84,6 @@ def load(source: str | PathLike[str] | npt.ArrayLike, rate: float | None) -> tup
     if largest < _QUIET:
         samples = np.ldexp(samples, -math.frexp(largest)[1])  # by a power of two, which is exact
     return samples, own
-
-
-def _file(path: Path) -> tuple[Array, float]:
-    check_regular(path)
-    path.open("rb").close()  # an OSError that names the file, if it cannot be read
-    if path.suffix.lower() in _DECODED:
-        with _decoded(path) as wave:
-            return _read(wave, str(path))
-    return _read(path, str(path))
 
 
 @contextmanager
@@ -135,9 +127,8 @@ def _read(path: Path, name: str) -> tuple[Array, float]:
         samples, rate = soundfile.read(path, dtype="float64", always_2d=True)
     except (soundfile.LibsndfileError, RuntimeError) as error:
         reason = str(error).partition(": ")[2].strip() or str(error)
-        raise ParameterError(
-            Problem(name, f": not a sound file that can be read (WAV, FLAC, OGG, MP3, AIFF): {reason}")
-        ) from None
+        text = f": not a sound file that can be read (WAV, FLAC, OGG, MP3, AIFF): {reason}"
+        raise ParameterError(Problem(name, text)) from None
     return np.asarray(samples, dtype=np.float64), float(rate)
 
 
