@@ -1,8 +1,8 @@
 """The scatter of ε in closed form, of a nearly round ball and of a rough one.
 
-Of a nearly round ball it is to lowest order in its out-of-roundness.
-The normal of a contact passes the centre of mass at the distance d, the lever arm: the derivative of the
-support function h(θ) by the angle. From (10) and (11), to second order in d and in the spin ω,
+Of a nearly round ball it is to lowest order in its out-of-roundness. The normal of a contact passes the
+centre of mass at the distance d, the lever arm: the derivative of the support function h(θ) by the angle.
+From (10) and (11), to second order in d and in the spin ω,
 
     ε - ε_n = -c (q d² + ω d/v),    Δω = c q v d,    c = 1 + ε_n,
 
@@ -15,10 +15,10 @@ that oscillate as 2 J_2(K) (Rechester and White, Phys. Rev. Lett. 44, 1586 (1980
 ball swings slowly about an angle where h is least. A clock then hardly sees the shape: the gap below the ball
 falls with g + h'' ω², and it is the contact point that comes back with ε_n: times give ε_n up to h'' ω²/g.
 
-Of a rough ball it follows from what its surface is known by: Ra.
-Ra is the mean distance of a profile from its mean line. Heights that are exponentially distributed with mean
-h_0 have Ra = 2 h_0/e. A sphere with many such asperities touches with one at the distance d from the vertical
-through its centre, ⟨d²⟩ = 2 h_0 R, whatever their number, and docs/rough.md gives
+Of a rough ball it follows from what its surface is known by: Ra, the mean distance of a profile from its mean
+line. Heights that are exponentially distributed with mean h_0 have Ra = 2 h_0/e. A sphere with many such
+asperities touches with one at the distance d from the vertical through its centre, ⟨d²⟩ = 2 h_0 R, whatever
+their number, and docs/rough.md gives
 
     ε - ε_n = c (ω d/v - q d²),    Δω = c q v d,    c = 1 + ε_n,
 

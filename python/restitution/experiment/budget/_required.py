@@ -137,15 +137,11 @@ def required_roundness(
         mean = math.sqrt(square.sum()) / n / float(experiment.coefficient.mean())
         rows.append((asked.diameter * share, single, mean, fit))
     deviations, *columns = np.array(rows).T
+    quantities = {"single": "one coefficient", "mean": "mean over a run", "fit": "fitted law"}
     data = xr.Dataset(
         {
             name: ("out_of_roundness", column, {"units": "1", "long_name": f"error of ε over ε, {what}"})
-            for name, column, what in zip(
-                ("single", "mean", "fit"),
-                columns,
-                ("one coefficient", "mean over a run", "fitted law"),
-                strict=True,
-            )
+            for (name, what), column in zip(quantities.items(), columns, strict=True)
         },
         coords={"out_of_roundness": ("out_of_roundness", deviations, {"units": "m"})},
         attrs={

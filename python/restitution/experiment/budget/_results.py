@@ -74,10 +74,8 @@ class ErrorBudget(Content):
         """
         data = self.data
         head = ["source", "first ε", f"ε at {float(data.impact_velocity[-1]):.2g} m/s", "mean ε"]
-        names = [str(name) for name in data.parameter.values]
-        units = [str(unit) for unit in data.parameter_unit.values]
-        for name, unit in zip(names, units, strict=True):
-            words = name.replace("_m_s", " m/s").replace("_", " ")
+        for name, unit in zip(data.parameter.values, data.parameter_unit.values, strict=True):
+            words = str(name).replace("_m_s", " m/s").replace("_", " ")
             head.append(words if unit == "1" else f"{words} ({unit})")
         lines = [f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
         for source in data.source.values:
@@ -85,7 +83,7 @@ class ErrorBudget(Content):
             places = (
                 *(("", {"impact": place}) for place in (0, -1)),
                 ("mean_", {}),
-                *(("parameter_", {"parameter": place}) for place in range(len(names))),
+                *(("parameter_", {"parameter": place}) for place in range(data.sizes["parameter"])),
             )
             cells = [_cell(one.isel(at), prefix) for prefix, at in places]
             if set(cells) == {"0"} and source not in ("shape", "total"):
