@@ -14,7 +14,6 @@ from restitution import flight
 from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.arrays import pair
 from restitution._internal.parameters import (
-    Allowed,
     Number,
     ParameterError,
     Parameters,
@@ -26,6 +25,7 @@ from restitution._internal.parameters import (
 from restitution.bodies import Form, Wall
 from restitution.experiment.budget.experiment import HEIGHT, STICKS, frictions
 from restitution.experiment.flight.chain import series_of
+from restitution.experiment.flight.setting import Length
 from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._rough import PER_SHAPE, flights, over_heights
 from restitution.experiment.inference._series import NEEDED, Series, check_from_release
@@ -52,9 +52,6 @@ _MOST_RANGE = 1e6
 """Of L/R: the grid has points all the way."""
 
 
-_OR_NONE = Allowed("a finite number >= 0 (m), or None")
-
-
 class Setting(Parameters):
     """The settings of an inference besides the times."""
 
@@ -64,8 +61,8 @@ class Setting(Parameters):
     particles: Annotated[Whole, Field(ge=100)]
     draws: Annotated[Whole, Field(ge=100, le=10**8)]
     seed: Annotated[Whole, Field(ge=0, lt=2**32)]
-    out_of_roundness: Annotated[Number | None, Field(ge=0, description="m"), _OR_NONE] = None
-    roughness: Annotated[Number | None, Field(ge=0, description="m"), _OR_NONE] = None
+    out_of_roundness: Length = None
+    roughness: Length = None
 
 
 def posterior(
@@ -195,7 +192,7 @@ def posterior(
         roughness=roughness,
     )
     given = frictions(_USUAL_NORMAL if law is None else law)
-    law, unknown = given[-1], len(given) > 1
+    law, unknown = given[-1], len(given) > 1 and friction is None
     low, high = _USUAL if elongation is None else _prior("elongation", elongation, least=_ROUNDEST)
     if not high < _MOST_RANGE * low:
         raise ParameterError(wrong("elongation", elongation, f"high < {_MOST_RANGE:g} low"))
@@ -210,7 +207,7 @@ def posterior(
     with in_terms_of(elongation=(low, high), diameter=diameter, **hollow):
         family.body(high)
     coefficients: Sequence[float | None] = [None]
-    if friction is None and unknown:
+    if unknown:
         coefficients = [0.0, STICKS]
     elif friction is not None:
         bottom, top = _prior("friction", friction, least=0.0)
@@ -245,14 +242,8 @@ def posterior(
         place = max(math.log(max(of_it, _ROUNDEST)), found.axes[1][0])
         found = found.weighted(-0.5 * ((found.axes[1] - place) / _MEASURED) ** 2)
     rough = _rough(series, family, nodes, scatters, coefficients, setting)
-    return _tree(
-        family,
-        setting,
-        (found, rough, smooth),
-        series,
-        scatters=scatter is not None,
-        unknown=unknown and friction is None,
-    )
+    tables = (found, rough, smooth)
+    return _tree(family, setting, tables, series, scatters=scatter is not None, unknown=unknown)
 
 
 def _rough(
@@ -361,9 +352,10 @@ def _tree(
         "observed_data": {"numbers": np.array([one.observed for one in series])},
     }
     tree: xr.DataTree = _from_dict()(groups, sample_dims=["chain", "draw"])
+    roughness = None
     if rough is not None:
         asperities, _ = drawn(rough)
-        asperities["roughness"] = asperities.pop("surface") / HEIGHT
+        roughness = asperities["roughness"] = asperities.pop("surface") / HEIGHT
         values = {name: (("chain", "draw"), each) for name, each in asperities.items()}
         tree["rough"] = xr.DataTree(xr.Dataset(values, coords=tree["posterior"].coords))
         tree["rough"]["roughness"].attrs["units"] = "m"
@@ -392,25 +384,9 @@ def _tree(
         **({"log_bayes_factor_scatter": verdict.for_scatter} if scatters else {}),
         "elongation_determined": int(verdict.surface == "shape" and verdict.cause in ("shape", "both")),
         "elongation_upper_limit": found.limit(1),
-        "answer": answer(
-            verdict,
-            shaped,
-            None if rough is None else asperities["roughness"],
-            0.25 * setting.diameter * found.limit(1),
-            disagrees,
-        ),
+        "answer": answer(verdict, shaped, roughness, 0.25 * setting.diameter * found.limit(1), disagrees),
         "predictive_p_value": min(1.0, len(best.signs) * min(best.signs)),
-        "verdict": disagrees
-        + sentence(
-            found,
-            rough,
-            verdict,
-            family.words,
-            setting.diameter,
-            elongation,
-            shaped.get("scatter"),
-            unknown=unknown,
-        ),
+        "verdict": disagrees + sentence(found, rough, verdict, family, shaped, unknown=unknown),
     }
     if rough is not None:
         tree.attrs |= {

@@ -1,7 +1,8 @@
 """One series of impacts, and the few numbers that stand for it."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +24,6 @@ from restitution.experiment.flight.times import LARGEST
 from restitution.laws import Law
 
 _FEWEST = 5
-NUMBERS = 6
 _FACTOR = 0.5
 """Standard deviation of the logarithm of the factor by which stated errors of times are off."""
 _ROUNDING = 1e-6
@@ -82,6 +82,7 @@ class Series:
     delay: Array  # what the standard error of the time of contact does to each flight, in s, shape (n - 1,)
     known: npt.NDArray[np.intp]  # impacts whose coefficient is known from times alone, shape (k,)
     speed: Array  # their measured speeds, shape (k,)
+    ratio: Array  # and their coefficients
     reference: float  # the parameter about which everything is linear
     form: LawOfSpeed
     slopes: Array  # dε_n by the parameter, shape (k,)
@@ -89,7 +90,6 @@ class Series:
     unseen: float  # a scatter of ε_n that errors of the times hide
     estimator: Array  # of the parameter by the residuals, shape (k,)
     whiten: Array  # makes of residuals independent ones, the fitted parameter taken off, shape (k, k)
-    observed: Array = field(default_factory=lambda: np.zeros(NUMBERS))  # shape (6,)
 
     @classmethod
     def of(
@@ -142,7 +142,7 @@ class Series:
         contact = float(data.attrs.get("contact_time_uncertainty", 0.0))
         drop = first**2 / (2.0 * gravity)
         half = 0.5 * gravity * np.diff(time)  # drag changes the contact times by little
-        one = cls(
+        return cls(
             drop=drop,
             gravity=gravity,
             common=math.hypot(
@@ -153,6 +153,7 @@ class Series:
             delay=contact * np.nan_to_num(delays(half, half)),
             known=known,
             speed=speed[known],
+            ratio=ratio[known],
             reference=reference,
             form=form,
             slopes=slopes,
@@ -161,7 +162,11 @@ class Series:
             estimator=estimator,
             whiten=whiten,
         )
-        return replace(one, observed=one.numbers(speed[None, known], ratio[None, known])[0])
+
+    @cached_property
+    def observed(self) -> Array:
+        """The numbers of the measured series, shape (6,)."""
+        return np.asarray(self.numbers(self.speed[None], self.ratio[None])[0])
 
     def numbers(self, speed: Array, ratio: Array) -> Array:
         """Return the numbers of series with these speeds and coefficients, (m, k) each; shape (m, 6)."""

@@ -10,6 +10,7 @@ import numpy as np
 from restitution._internal.arrays import FloatArray as Array
 from restitution._internal.text import digits
 from restitution.experiment.budget.experiment import HEIGHT
+from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._table import Table
 
 Surface = Literal["shape", "roughness", "surface"]
@@ -153,16 +154,14 @@ def sentence(
     found: Table,
     rough: Table | None,
     verdict: Verdict,
-    form: str,
-    diameter: float,
-    elongation: Array,
-    scatter: Array | None,
+    family: Family,
+    shaped: Mapping[str, Array],
     *,
     unknown: bool,
 ) -> str:
-    """State the result, and the form that it assumes."""
-    micrometres = 0.25 * diameter * 1e6
-    low, middle, high = np.quantile(elongation, (0.05, 0.5, 0.95))
+    """State the result, and the form that it assumes, from draws of balls with a shape by name."""
+    form, micrometres = family.words, 0.25 * family.diameter * 1e6
+    low, middle, high = np.quantile(shaped["elongation"], (0.05, 0.5, 0.95))
     most = found.limit(_ELONGATION)
     shape = (
         f"L/R = {middle:.2g}, between {low:.2g} and {high:.2g} (90 %), an out-of-roundness of "
@@ -199,10 +198,10 @@ def sentence(
     )
     undetermined = "The times do not determine the shape"
     round_as_well = f"{undetermined}: a round ball explains them as well. {at_most}."
-    if scatter is None:
+    if "scatter" not in shaped:
         assumed = told.replace(":", ", if ε_n does not scatter:", 1)
         return f"{assumed}.{open_still}" if verdict.cause == verdict.surface else round_as_well
-    below, usual, above = np.quantile(scatter, (0.05, 0.5, 0.95))
+    below, usual, above = np.quantile(shaped["scatter"], (0.05, 0.5, 0.95))
     material = f"ε_n scatters by {usual:.2g}, between {below:.2g} and {above:.2g} (90 %)"
     at_most_scatter = f"ε_n scatters by less than {found.limit(_SCATTER):.2g} (95 %)"
     match verdict.cause:
