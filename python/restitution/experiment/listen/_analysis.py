@@ -193,14 +193,11 @@ class Analysis(Content):
     together : Series or None
         Where there are several drops, what they say together, with a term between them; the shape is inferred
         from all of them, and that of each is None.
-    warnings : tuple of str
-        What to be careful about, a sentence or two each; what disagrees comes first.
     """
 
     setting: Setting
     recordings: tuple[Recording, ...]
     together: Series | None
-    warnings: tuple[str, ...]
 
     @property
     def file(self) -> str:
@@ -227,6 +224,11 @@ class Analysis(Content):
     def sentences(self) -> list[str]:
         """The result, of each of the answers."""
         return [one.sentence(self.setting) for one in self.answers]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What to be careful about, a sentence or two each; what disagrees comes first."""
+        return tuple(_warnings(self))
 
     def dataset(self) -> xr.Dataset:
         """Put everything into one Dataset over ``impact``; the covariance is that of each series.
@@ -310,8 +312,7 @@ def analyse(file: Path | Sequence[Path], setting: Setting) -> Analysis:
             one._replace(series=tuple(replace(s, shape=shape([s.data], s.fits, setting)) for s in one.series))
             for one in recordings
         )
-    analysis = Analysis(setting, recordings, together, ())
-    return replace(analysis, warnings=tuple(_warnings(analysis)))
+    return Analysis(setting, recordings, together)
 
 
 def _heard(file: Path, setting: Setting) -> tuple[xr.Dataset, Separation]:
@@ -322,9 +323,8 @@ def _heard(file: Path, setting: Setting) -> tuple[xr.Dataset, Separation]:
         heard["series"] = xr.zeros_like(heard.flag, dtype=np.int64)
         return heard, told
     if setting.time_uncertainty is not None:
-        raise ParameterError(
-            Problem(str(file), ": a recording, in which errors of times are found, not given")
-        )
+        text = ": a recording, in which errors of times are found, not given"
+        raise ParameterError(Problem(str(file), text))
     return impacts(file), KNOWN
 
 
@@ -423,13 +423,11 @@ def _check_drop(first: xr.Dataset, setting: Setting) -> None:
     interval = float(first.time[1] - first.time[0])
     height = setting.gravity * interval**2 / 8.0
     if ratio > 1.05:
-        raise ParameterError(
-            Problem(
-                "drop",
-                f" = {setting.drop:g} m: the first flight heard, {interval:.3f} s, is {height:.3g} m high; "
-                "the drop is wrong, or the sample rate of the file, or an earlier impact was not heard",
-            )
+        text = (
+            f" = {setting.drop:g} m: the first flight heard, {interval:.3f} s, is {height:.3g} m high; "
+            "the drop is wrong, or the sample rate of the file, or an earlier impact was not heard"
         )
+        raise ParameterError(Problem("drop", text))
     # From a drop in cm the first ε is a tenth of the next one.
     later = float(np.nanmedian(first.restitution.values[1:])) if first.sizes["impact"] > 3 else math.nan
     if ratio < _FIRST * later:

@@ -214,16 +214,8 @@ def _series(one: Series, setting: Setting, drops: Sequence[Series] = ()) -> list
             parameters = ", ".join(map(" = ".join, fit.estimates()))
             scatter = spread(fit.scatter, fit.scatter_error) if fit.scatter_error > 0.0 else "none fitted"
             chance = "" if fit.scatter_error > 0.0 else f"{fit.p_value:.2g}"
-            quality = f"{fit.chi2:.1f}/{fit.degrees_of_freedom}"
-            cells = [
-                text(fit.law),
-                prose(parameters),
-                prose(scatter),
-                quality,
-                chance,
-                f"{fit.aic - best:.1f}",
-            ]
-            rows.append(cells)
+            quality = [f"{fit.chi2:.1f}/{fit.degrees_of_freedom}", chance, f"{fit.aic - best:.1f}"]
+            rows.append([text(fit.law), prose(parameters), prose(scatter), *quality])
         caption = "Laws, the best first. The scatter is what errors of measurement do not explain."
         head = ["law", "parameters", "scatter of ε", "χ²/n", "p", "ΔAIC"]
         parts.append(table(head, rows, caption=caption, numbers=(3, 4, 5)))

@@ -7,14 +7,13 @@ from pydantic import Field, model_validator
 from restitution import flight
 from restitution._internal.parameters import Allowed, Number, ParameterError, wrong
 from restitution.bodies import Wall, from_roundness
-from restitution.experiment.flight.setting import Gravity
+from restitution.experiment.flight.setting import Gravity, Length
 
 _HEAVIEST = 23_000.0
 """In kg/m³: no matter is denser, so that a mass beyond it was in g."""
 _LARGEST = 1.0
 """Diameter in m of balls that are bounced; beyond it was in mm."""
 _OR_NONE = Allowed("a finite number > 0 (SI units), or None")
-_LENGTH_OR_NONE = Allowed("a finite number >= 0 (m), or None")
 _CONTACT_OR_NONE = Allowed("a finite number >= 0 (s), or None")
 _TIME_OR_NONE = Allowed("a finite number > 0 (s), or None")
 
@@ -53,15 +52,15 @@ class Setting(Gravity):
     drop: Annotated[Number | None, Field(gt=0, description="m"), _OR_NONE] = None
     drop_uncertainty: Annotated[Number, Field(ge=0, description="m")] = 0.0
     time_uncertainty: Annotated[Number | None, Field(gt=0, description="s"), _TIME_OR_NONE] = None
-    out_of_roundness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
-    roughness: Annotated[Number | None, Field(ge=0, description="m"), _LENGTH_OR_NONE] = None
+    out_of_roundness: Length = None
+    roughness: Length = None
     wall: Wall = None
     contact_time: Annotated[Number | None, Field(ge=0, description="s"), _CONTACT_OR_NONE] = None
     contact_uncertainty: Annotated[Number, Field(ge=0, description="s")] = 0.0
     doubtful: bool = False
 
     @model_validator(mode="after")
-    def _in_other_units(self) -> Self:
+    def _plausible(self) -> Self:
         if self.diameter >= _LARGEST:
             asked = f"in m, below {_LARGEST:g}; {self.diameter:g} mm are {1e-3 * self.diameter:g}"
             raise ParameterError(wrong("diameter", self.diameter, asked))
@@ -72,10 +71,6 @@ class Setting(Gravity):
                     f"in kg, of a density up to {_HEAVIEST:g} kg/m³; {self.mass:g} g are {1e-3 * self.mass:g}"
                 )
                 raise ParameterError(wrong("mass", self.mass, asked))
-        return self
-
-    @model_validator(mode="after")
-    def _nearly_round(self) -> Self:
         if self.out_of_roundness is not None or self.wall is not None:
             from_roundness(self.diameter, self.out_of_roundness or 0.0, wall=self.wall)
         return self
