@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from importlib.metadata import version
 from itertools import product
 from typing import Annotated, Any
@@ -9,6 +10,7 @@ from typing import Annotated, Any
 import numpy as np
 import xarray as xr
 from pydantic import Field
+from scipy.interpolate import Akima1DInterpolator
 
 from restitution import flight
 from restitution._internal.arrays import FloatArray as Array
@@ -27,7 +29,6 @@ from restitution.experiment.budget.experiment import HEIGHT, STICKS, frictions
 from restitution.experiment.flight.chain import series_of
 from restitution.experiment.flight.setting import Length
 from restitution.experiment.inference._family import Family
-from restitution.experiment.inference._rough import PER_SHAPE, flights, over_heights
 from restitution.experiment.inference._series import NEEDED, Series, check_from_release
 from restitution.experiment.inference._table import Table, table
 from restitution.experiment.inference._verdict import agreeing, answer, disagreement, judge, sentence
@@ -46,6 +47,8 @@ _ROUNDEST = 1e-9
 """L/R below which no ball is: of a millimetre it is less than an atom."""
 _CHAINS = 4
 """Into which the draws, all independent, are divided, as other tools expect them."""
+_PER_SHAPE = 1.0 / (8.0 * np.sqrt(2.0))
+"""Mean height over R of asperities that make ε scatter as a ball of two lobes does, over (L/R)²."""
 _MEASURED = 0.3
 """Standard deviation of ln of an out-of-roundness or Ra that was measured: of other places of the ball."""
 _MOST_RANGE = 1e6
@@ -263,18 +266,23 @@ def _rough(
     if setting.roughness == 0.0 or len(known) < len(couplings):
         return None
     radius = 0.5 * setting.diameter
-    heights = PER_SHAPE * radius * nodes**2
+    heights = _PER_SHAPE * radius * nodes**2
     # From k of the lowest asperities that hold to that of the highest that slide.
     low, high = min(known) * radius * heights[0], max(known) * radius * heights[-1]
     kicks = np.geomspace(low, high, 1 + math.ceil(0.5 * _SHAPES * math.log10(high / low)))
 
     def bounced(one: Series, parameter: float, kick: float, _: float | None, start: int) -> Array:
-        return flights(one, parameter, kick, setting.particles, start)
+        return one.simulated_rough(parameter, kick, setting.particles, start)
 
     found = table(series, family, bounced, kicks, scatters, [None], setting.particles, setting.seed)
+    # A likelihood over ln k is one over ln of the height, and over the friction where there are several.
+    between, ends = Akima1DInterpolator(found.axes[1], found.values, axis=1), found.axes[1][[0, -1]]
     fine = np.geomspace(heights[0], heights[-1], found.axes[1].size)
-    given = [mu for mu in frictions if mu is not None]
-    found = over_heights(found, fine, [q * radius for q in known], given)
+    each = [between(np.clip(np.log(fine * (q * radius)), *ends)) for q in known]
+    axes, values = [found.axes[0], np.log(fine), *found.axes[2:]], each[0]
+    if len(known) > 1:
+        axes, values = [*axes, np.array(frictions, dtype=np.float64)], np.stack(each, axis=-1)
+    found = replace(found, axes=tuple(axes), values=np.asarray(values))
     if setting.roughness is not None:
         beyond = found.axes[1] - max(math.log(HEIGHT * setting.roughness), found.axes[1][0])
         found = found.weighted(-0.5 * (np.maximum(beyond, 0.0) / _MEASURED) ** 2)

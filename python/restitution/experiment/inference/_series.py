@@ -216,6 +216,36 @@ class Series:
         """Drop such balls and return their flights, (m, n - 1) in s, of those that bounce so often."""
         return np.diff(times_of_impacts(self._run(body, law, particles, seed)), axis=1)
 
+    def simulated_rough(self, parameter: float, kick: float, particles: int, seed: int) -> Array:
+        """Drop round balls with asperities, without spin; return their flights, (particles, n - 1) in s.
+
+        They follow the map of docs/rough.md. A contact lies at d = s (X, Y), s² = h_0 R, X and Y Gaussian for
+        exponential heights of mean h_0. With the horizontal velocity u that the spin gives to the lowest
+        point, and c = 1 + ε_n,
+
+            ε = c (1 + u·d/v)/(1 + q d²) - 1,    Δu = -q d c (v + u·d)/(1 + q d²),
+
+        q as of `coupling`. Contacts are met in proportion to their speed of approach, which shifts the mean
+        of d by s² u/v. With w = s u all of this depends on one number only, k = q s², the `kick`: friction
+        changes q, and so what h_0 is that a k stands for. Contacts of different impacts are independent.
+        """
+        rng = np.random.default_rng(seed)
+        speed = np.full(particles, np.sqrt(2.0 * self.gravity * self.drop))
+        drift = np.zeros((particles, 2))
+        found = np.empty((particles, self.errors.size - 1))
+        for impact in range(self.errors.size - 1):
+            moving = speed > 0.0  # others have come to rest, and are no series
+            here = np.where(moving, speed, np.nan)
+            usual = np.full(particles, np.nan)
+            usual[moving] = self.form.coefficient(speed[moving], np.array([parameter]))
+            arm = rng.standard_normal((particles, 2)) + drift / here[:, None]
+            approach = here + np.sum(drift * arm, axis=1)
+            impulse = (1.0 + usual) * approach / (1.0 + kick * np.sum(arm**2, axis=1))
+            drift = drift - kick * impulse[:, None] * arm
+            speed = impulse - here
+            found[:, impact] = 2.0 * speed / self.gravity
+        return found
+
     def noise(self, drops: int, seed: int) -> tuple[Array, Array]:
         """Draw errors of flights in s, and of ε_n in units of its scatter; (drops, n - 1) each.
 
