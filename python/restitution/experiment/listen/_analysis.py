@@ -318,8 +318,11 @@ def analyse(file: Path | Sequence[Path], setting: Setting) -> Analysis:
 def _heard(file: Path, setting: Setting) -> tuple[xr.Dataset, Separation]:
     """Return the impacts of a file, and what is known of the errors of their times."""
     if file.suffix.lower() in _TABLES:
-        heard = flight.read(file, uncertainty=setting.time_uncertainty)
-        heard, told = _with_errors(heard, setting)
+        heard, told = flight.read(file, uncertainty=setting.time_uncertainty), KNOWN
+        if not heard.uncertainty.fillna(0.0).any():  # where the coefficients show errors, these are put in
+            told = separation([measured_of(_coefficients(heard, setting, first=True))])
+            errors = np.where(np.isnan(heard.time.values), np.nan, told.timing)
+            heard = heard.assign(uncertainty=("impact", errors, heard.uncertainty.attrs))
         heard["series"] = xr.zeros_like(heard.flag, dtype=np.int64)
         return heard, told
     if setting.time_uncertainty is not None:
@@ -331,15 +334,6 @@ def _heard(file: Path, setting: Setting) -> tuple[xr.Dataset, Separation]:
 def heard_in(heard: xr.Dataset) -> bool:
     """Tell times that were heard in a recording from those of a table."""
     return "rate" in heard.attrs
-
-
-def _with_errors(heard: xr.Dataset, setting: Setting) -> tuple[xr.Dataset, Separation]:
-    """Put the errors of times that came without one into a table, where its coefficients show them."""
-    if heard.uncertainty.fillna(0.0).any():
-        return heard, KNOWN
-    told = separation([measured_of(_coefficients(heard, setting, first=True))])
-    errors = np.where(np.isnan(heard.time.values), np.nan, told.timing)
-    return heard.assign(uncertainty=("impact", errors, heard.uncertainty.attrs)), told
 
 
 def _recording(path: Path, heard: xr.Dataset, told: Separation, setting: Setting) -> Recording:
