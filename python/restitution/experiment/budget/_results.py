@@ -247,7 +247,7 @@ class RequiredRoundness(Content):
         """
         figure, [[axes]] = panels(*column(3.0))
         deviation = self.data.out_of_roundness.values * 1e6
-        names = {"single": "one impact", "mean": "mean of a run", "fit": r"fitted $\varepsilon^n(v)$"}
+        names = {"single": "one impact", "mean": "mean of a run", "fit": r"fitted $\varepsilon_n(v)$"}
         for number, (name, label) in enumerate(names.items()):
             dashes = ("-", "--", ":")[number]
             axes.loglog(deviation, self.data[name], dashes, color=colors()[number], label=label)
