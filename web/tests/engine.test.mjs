@@ -186,7 +186,7 @@ test("a gas is that of the native engine, step by step, with its temperatures", 
   });
   const lines = steps.map(([setup, [{ reach }]]) => `
 from restitution import _core
-from restitution.pair.axes import turned_axes
+from restitution.pair.partners import turned_axes
 import json, numpy as np
 ${page.python(setup).split("\n").filter((line) => /^(import restitution|body|law) /.test(line)).join("\n")}
 count, T, side = ${setup.grains}, body.mass * ${setup.thermal_speed} ** 2, ${page.sideOf(setup)} * ${reach}
