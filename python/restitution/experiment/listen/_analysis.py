@@ -227,7 +227,7 @@ class Analysis(Content):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What to be careful about, a sentence or two each; what disagrees comes first."""
+        """Reasons for care, a sentence or two each; disagreements come first."""
         return tuple(_warnings(self))
 
     def dataset(self) -> xr.Dataset:
